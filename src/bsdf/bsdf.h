@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: MIT */
+/* How matter scatters light at a point: one file a model, nothing but numbers in and out.
+ *
+ * Directions are in the local frame: normal +z, tangent +x; wo toward the viewer, wi toward the light, both pointing away
+ * from the surface. f is in sr^-1, without the cosine. Where light passes into another medium, f is the radiance form
+ * (with the factor eta^2) when mode is SR_RADIANCE, and the form for light paths when SR_IMPORTANCE. */
+#ifndef SR_BSDF_BSDF_H
+#define SR_BSDF_BSDF_H
+
+#include "sample/sample.h"
+#include "spectrum/spectrum.h"
+
+enum sr_transport { SR_RADIANCE, SR_IMPORTANCE };
+
+/* What a BSDF consists of, and what a sample is. */
+enum {
+    SR_LOBE_REFLECTION = 1,
+    SR_LOBE_TRANSMISSION = 2,
+    SR_LOBE_DIFFUSE = 4,
+    SR_LOBE_GLOSSY = 8,
+    SR_LOBE_SPECULAR = 16, // delta functions: f and pdf are 0, only sample finds them
+};
+
+struct sr_bsdf_sample {
+    sr_vec3 wi;
+    sr_spectrum f;    // [1/sr]; for delta lobes f / pdf * |cos_theta_i| is the weight
+    float pdf;        // [1/sr]; for delta lobes the probability of the lobe
+    float eta;        // [1] relative index on the path's way if the sample is a transmission into another medium, else 1
+    uint32_t lobe;    // SR_LOBE_* of what was drawn
+    bool pdf_is_proportional; // f and pdf share an unknown factor (random walks): use pdf() for weighing
+};
+
+#define SR_BSDF_SIZE 256 // [B] of the largest model's data
+
+struct sr_bsdf_model {
+    const char *name;
+    const struct sr_param *params; // of the plain struct below, for laboratory, docs and tests: floats, ALBEDO and
+                                   // UNBOUNDED rows are sr_spectrum members here (already at the path's wavelengths)
+    size_t size;                   // <= SR_BSDF_SIZE
+    uint32_t (*lobes)(const void *self);
+    sr_spectrum (*f)(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode);
+    float (*pdf)(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode);
+    bool (*sample)(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode, struct sr_bsdf_sample *s);
+    /* f and pdf at once, where sharing work pays; NULL: the two are called. Must equal them bit for bit. */
+    sr_spectrum (*f_pdf)(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *pdf);
+    /* directional albedo E(wo) per wavelength where a closed form is known; NULL: nobody knows one. */
+    sr_spectrum (*albedo)(const void *self, sr_vec3 wo);
+    bool is_random;  // f and pdf are themselves unbiased estimates: they depend on a seed in the data
+    bool not_reciprocal;
+};
+extern const struct sr_bsdf_model *const sr_bsdf_models[]; // ends with NULL
+const struct sr_bsdf_model *sr_bsdf_model_find(const char *name);
+
+/* A BSDF at a point: plain data, no pointers to temporaries. */
+struct sr_bsdf {
+    const struct sr_bsdf_model *model; // NULL: the surface does not scatter, light passes as if it were not there
+    _Alignas(64) unsigned char data[SR_BSDF_SIZE];
+};
+
+static inline uint32_t sr_bsdf_lobes(const struct sr_bsdf *b)
+{
+    return b->model->lobes(b->data);
+}
+static inline sr_spectrum sr_bsdf_f(const struct sr_bsdf *b, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode)
+{
+    return b->model->f(b->data, wo, wi, mode);
+}
+static inline float sr_bsdf_pdf(const struct sr_bsdf *b, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode)
+{
+    return b->model->pdf(b->data, wo, wi, mode);
+}
+static inline sr_spectrum sr_bsdf_f_pdf(const struct sr_bsdf *b, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *pdf)
+{
+    if (b->model->f_pdf)
+        return b->model->f_pdf(b->data, wo, wi, mode, pdf);
+    *pdf = b->model->pdf(b->data, wo, wi, mode);
+    return b->model->f(b->data, wo, wi, mode);
+}
+static inline bool sr_bsdf_sample(const struct sr_bsdf *b, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode,
+                                  struct sr_bsdf_sample *s)
+{
+    return b->model->sample(b->data, wo, u_lobe, u, mode, s);
+}
+
+/* Fresnel reflectance, unpolarised. eta = index behind the surface / index on wo's side; cos_theta signed: negative means
+ * from behind. */
+float sr_fresnel_dielectric(float cos_theta_i, float eta);
+sr_spectrum sr_fresnel_conductor(float cos_theta_i, sr_spectrum eta, sr_spectrum k);
+/* Reflectance of a dielectric for Lambertian incidence from the thin side, n > 1 (Walsh 1926); from inside: 1 - (1-F)/n^2 */
+double sr_fresnel_diffuse(double n);
+/* Snell's law about the normal n; false at total reflection. *eta_path is the relative index along the way of wt. */
+bool sr_refract(sr_vec3 wi, sr_vec3 n, float eta, float *eta_path, sr_vec3 *wt);
+static inline sr_vec3 sr_reflect(sr_vec3 wo, sr_vec3 n)
+{
+    return sr_sub(sr_scale(2 * sr_dot(wo, n), n), wo);
+}
+
+/* Trowbridge-Reitz (GGX) microfacets, anisotropic, Smith height-correlated. */
+struct sr_ggx {
+    float alpha_x, alpha_y; // [1] slope widths
+};
+bool sr_ggx_is_smooth(struct sr_ggx g); // so smooth that it counts as a mirror: max alpha < 1e-3
+float sr_ggx_D(struct sr_ggx g, sr_vec3 wm);                            // [1/sr]
+float sr_ggx_G1(struct sr_ggx g, sr_vec3 w);                            // [1]
+float sr_ggx_G(struct sr_ggx g, sr_vec3 wo, sr_vec3 wi);                // [1]
+float sr_ggx_visible_pdf(struct sr_ggx g, sr_vec3 w, sr_vec3 wm);       // [1/sr] of visible normals
+sr_vec3 sr_ggx_sample_visible(struct sr_ggx g, sr_vec3 w, sr_vec2 u);
+float sr_ggx_roughness_to_alpha(float roughness);                       // pbrt's: sqrt(roughness)
+
+/* The models' plain data: what a material fills in. Each spectrum is at the path's wavelengths. */
+struct sr_bsdf_diffuse {
+    sr_spectrum reflectance; // [1]
+};
+struct sr_bsdf_diffuse_transmission {
+    sr_spectrum reflectance, transmittance; // [1]
+};
+struct sr_bsdf_conductor {
+    sr_spectrum eta, k; // [1] relative to the outside
+    struct sr_ggx ggx;
+};
+struct sr_bsdf_dielectric {
+    float eta; // [1] inside over outside
+    struct sr_ggx ggx;
+};
+struct sr_bsdf_thin_dielectric {
+    float eta; // [1]
+};
+/* A dielectric coat over a base, with an optional medium between (position-free random walk, Guo, Hasan & Zhao 2018). */
+struct sr_bsdf_coated {
+    sr_spectrum base_reflectance;  // [1]  coateddiffuse
+    sr_spectrum base_eta, base_k;  // [1]  coatedconductor, relative to the coat
+    sr_spectrum albedo;            // [1]  single-scattering albedo of the medium; black: clear
+    struct sr_ggx coat_ggx, base_ggx;
+    float coat_eta;  // [1]
+    float thickness; // [1] optical: in units of the medium's mean free path
+    float g;         // [1] Henyey-Greenstein
+    int32_t max_depth, sample_count;
+    uint32_t seed;   // of this vertex: f and pdf are random walks
+};
+extern const struct sr_bsdf_model sr_bsdf_diffuse, sr_bsdf_diffuse_transmission, sr_bsdf_conductor, sr_bsdf_dielectric,
+    sr_bsdf_thin_dielectric, sr_bsdf_coated_diffuse, sr_bsdf_coated_conductor;
+
+#endif

@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: MIT */
+/* Random numbers that are pure functions, warps with their densities, and distributions to draw from.
+ *
+ * Every number is a function of (seed, pixel, replicate, sample, dimension): no state to share, any sample of any image
+ * can be recomputed alone, and bytes do not depend on who computes what. */
+#ifndef SR_SAMPLE_SAMPLE_H
+#define SR_SAMPLE_SAMPLE_H
+
+#include "math/math.h"
+
+/* ---- hashes ---- */
+
+static inline uint32_t sr_hash_u32(uint32_t x) // a bijection with full avalanche ("lowbias32" form)
+{
+    x ^= x >> 16;
+    x *= 0x21f0aaadu;
+    x ^= x >> 15;
+    x *= 0xd35a2d97u;
+    x ^= x >> 15;
+    return x;
+}
+static inline uint32_t sr_hash_combine(uint32_t a, uint32_t b)
+{
+    return sr_hash_u32(a * 0x9e3779b9u + sr_hash_u32(b + 0x7f4a7c15u));
+}
+uint64_t sr_hash_bytes(const void *data, size_t size, uint64_t seed);
+static inline float sr_u32_to_float(uint32_t x) // [0, 1), 24 bits
+{
+    return (float)(x >> 8) * 0x1p-24f;
+}
+
+/* A small stateful generator (PCG32) for random walks inside one vertex; seeded by a hash, never shared. */
+struct sr_rng {
+    uint64_t state, increment;
+};
+struct sr_rng sr_rng_seed(uint64_t seed, uint64_t stream);
+uint32_t sr_rng_u32(struct sr_rng *rng);
+static inline float sr_rng_float(struct sr_rng *rng)
+{
+    return sr_u32_to_float(sr_rng_u32(rng));
+}
+
+/* ---- the sampler ---- */
+
+enum sr_sampler_kind {
+    SR_SAMPLER_SOBOL,       // Owen-scrambled Sobol' nets, four dimensions at a time, shuffled between groups
+    SR_SAMPLER_INDEPENDENT, // uniform, independent
+};
+
+struct sr_sampler {
+    uint32_t key;    // hash of seed, pixel and replicate
+    uint32_t sample; // index in the pixel's net
+    uint32_t kind;   // enum sr_sampler_kind
+};
+struct sr_sampler sr_sampler_start(enum sr_sampler_kind kind, uint32_t seed, uint32_t pixel_x, uint32_t pixel_y,
+                                   uint32_t replicate, uint32_t sample);
+
+/* Four numbers in [0, 1) for one purpose ("group"); within a group the four are one 4-D Sobol' net whose components x, y
+ * form a (0,2)-sequence: give x, y to what matters most. */
+typedef float sr_u4 __attribute__((vector_size(16)));
+sr_u4 sr_sample4(const struct sr_sampler *s, uint32_t group);
+
+/* ---- warps: uniform numbers to shapes, with densities ---- */
+
+sr_vec2 sr_warp_disk(sr_vec2 u);                // concentric (Shirley & Chiu 1997), pdf 1/pi
+sr_vec3 sr_warp_uniform_sphere(sr_vec2 u);      // pdf 1/(4 pi) sr^-1
+sr_vec3 sr_warp_uniform_hemisphere(sr_vec2 u);  // pdf 1/(2 pi) sr^-1
+sr_vec3 sr_warp_cosine_hemisphere(sr_vec2 u);   // pdf cos/pi sr^-1
+static inline float sr_warp_cosine_hemisphere_pdf(float cos_theta)
+{
+    return cos_theta > 0 ? cos_theta * SR_INV_PI : 0;
+}
+sr_vec3 sr_warp_uniform_cone(sr_vec2 u, float one_minus_cos_max); // around +z, pdf 1/(2 pi (1 - cos)) sr^-1
+sr_vec2 sr_warp_triangle(sr_vec2 u);            // barycentrics of vertices 0 and 1 (Heitz 2019), uniform by area
+float sr_warp_exponential(float u, float a);    // density a exp(-a x)
+/* Bilinear density on the unit square with corner weights w[0]=(0,0), w[1]=(1,0), w[2]=(0,1), w[3]=(1,1). */
+sr_vec2 sr_warp_bilinear(sr_vec2 u, const float w[4]);
+float sr_warp_bilinear_pdf(sr_vec2 p, const float w[4]);
+
+/* Uniform directions in the spherical triangle of v seen from p (Arvo 1995): barycentrics and pdf [1/sr]; pdf 0 = none. */
+void sr_spherical_triangle_sample(const sr_vec3 v[3], sr_vec3 p, sr_vec2 u, float barycentric[3], float *pdf);
+sr_vec2 sr_spherical_triangle_invert(const sr_vec3 v[3], sr_vec3 p, sr_vec3 w); // the u that gives direction w
+double sr_spherical_triangle_area(sr_vec3 a, sr_vec3 b, sr_vec3 c); // of unit vectors [sr] (Van Oosterom & Strackee 1983)
+/* The same for a rectangle with corner s and edges ex, ey (Urena et al. 2013): the point, and pdf [1/sr]. */
+sr_vec3 sr_spherical_rectangle_sample(sr_vec3 p, sr_vec3 s, sr_vec3 ex, sr_vec3 ey, sr_vec2 u, float *pdf);
+sr_vec2 sr_spherical_rectangle_invert(sr_vec3 p, sr_vec3 s, sr_vec3 ex, sr_vec3 ey, sr_vec3 on_rectangle);
+
+/* ---- distributions ---- */
+
+/* Discrete choice in O(1) (Vose 1991). */
+struct sr_alias {
+    uint32_t count;
+    float *pmf;       // [1] of each outcome
+    float *threshold; // [1]
+    uint32_t *other;
+};
+bool sr_alias_build(struct sr_arena *arena, const float *weights, uint32_t count, struct sr_alias *a); // false: all zero or no memory
+uint32_t sr_alias_sample(const struct sr_alias *a, float u, float *pmf, float *u_remapped); // NULL where not wanted
+
+/* Piecewise constant on [lo, hi]. A function that is zero everywhere gives the uniform density. */
+struct sr_piecewise1 {
+    uint32_t count;
+    float lo, hi;
+    double integral;
+    float *f;   // count values
+    float *cdf; // count + 1 values
+};
+bool sr_piecewise1_build(struct sr_arena *arena, const float *f, uint32_t count, float lo, float hi, struct sr_piecewise1 *d);
+float sr_piecewise1_sample(const struct sr_piecewise1 *d, float u, float *pdf, uint32_t *cell);
+float sr_piecewise1_pdf(const struct sr_piecewise1 *d, float x);
+
+/* Piecewise constant on [0,1]^2, rows first. */
+struct sr_piecewise2 {
+    uint32_t nx, ny;
+    double integral;
+    struct sr_piecewise1 marginal;     // over y
+    struct sr_piecewise1 *conditional; // over x, one a row
+};
+bool sr_piecewise2_build(struct sr_arena *arena, const float *f, uint32_t nx, uint32_t ny, struct sr_piecewise2 *d);
+sr_vec2 sr_piecewise2_sample(const struct sr_piecewise2 *d, sr_vec2 u, float *pdf);
+float sr_piecewise2_pdf(const struct sr_piecewise2 *d, sr_vec2 p);
+
+#endif

@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: MIT */
+/* A value over a surface: constant, image, checkerboard, …: one file a kind.
+ *
+ * A texture is two words, {model, self}; it may hold other textures. A texture of the scene file that is "spectrum" is
+ * bound to a use (reflectance, unbounded quantity, emission) when it is made, which decides what its RGB means. */
+#ifndef SR_TEXTURE_TEXTURE_H
+#define SR_TEXTURE_TEXTURE_H
+
+#include "base/base.h"
+#include "math/math.h"
+#include "spectrum/spectrum.h"
+
+struct sr_texture_model;
+struct sr_texture {
+    const struct sr_texture_model *model; // NULL: not given
+    const void *self;
+};
+
+/* How RGB values become spectra: SR_PARAM_ALBEDO, SR_PARAM_UNBOUNDED or SR_PARAM_ILLUMINANT, in a colour space. */
+struct sr_texture_use {
+    enum sr_param_kind rgb_use;
+    enum sr_colour_space_id space;
+};
+
+/* One file of src/texture/ each; its struct's first fields are described by params. The importer fills the struct by the
+ * table, then calls `prepare` (may be NULL), which checks, loads nothing, allocates from the arena, may set *self anew. */
+struct sr_texture_model {
+    const char *name; // the scene file's word: "imagemap"
+    const struct sr_param *params;
+    size_t size;
+    bool is_float, is_spectrum; // which of the two eval functions exist
+    sr_status (*prepare)(void *self, struct sr_texture_use use, struct sr_arena *arena, struct sr_error *error);
+    float (*eval_float)(const void *self, const struct sr_point *x);
+    sr_spectrum (*eval_spectrum)(const void *self, const struct sr_point *x, const struct sr_wavelengths *w);
+};
+extern const struct sr_texture_model *const sr_texture_models[]; // ends with NULL
+const struct sr_texture_model *sr_texture_model_find(const char *name);
+
+static inline float sr_texture_float(struct sr_texture t, const struct sr_point *x)
+{
+    return t.model->eval_float(t.self, x);
+}
+static inline sr_spectrum sr_texture_spectrum(struct sr_texture t, const struct sr_point *x, const struct sr_wavelengths *w)
+{
+    return t.model->eval_spectrum(t.self, x, w);
+}
+struct sr_texture sr_texture_constant_float(struct sr_arena *arena, float value);
+struct sr_texture sr_texture_constant_spectrum(struct sr_arena *arena, struct sr_spd value);
+bool sr_texture_is_constant_float(struct sr_texture t, float *value); // true: the value everywhere
+
+/* Texels in memory, made by the importer from an image: 8-bit stays 8-bit, everything else is float. */
+struct sr_texels {
+    uint32_t width, height, channels; // channels 1 (grey), 3 (RGB) or 4 (RGB and alpha)
+    const uint8_t *bytes;             // width*height*channels, or NULL
+    const float *floats;              // the same, linear; or NULL
+    const float *decode;              // 256 linear values for bytes: sRGB, linear or a gamma
+    enum sr_colour_space_id space;    // of its RGB
+};
+
+/* Row of the table for a texture that reads an image: kind SR_PARAM_FILE for the name; the importer stores the texels in
+ * the member at texels_offset of models that have one (SIZE_MAX: none). */
+size_t sr_texture_texels_offset(const struct sr_texture_model *model);
+
+/* 2-D mapping: the parameters common to all 2-D textures. (u, v) -> (s, t) and its footprint. */
+enum sr_mapping_kind { SR_MAPPING_UV, SR_MAPPING_SPHERICAL, SR_MAPPING_CYLINDRICAL, SR_MAPPING_PLANAR };
+struct sr_mapping {
+    int32_t kind;
+    float uscale, vscale, udelta, vdelta;
+    sr_vec3 v1, v2;                          // planar axes [1/m]
+    struct sr_transform world_to_texture;    // set by the importer from the transform at the directive
+};
+struct sr_mapped {
+    sr_vec2 st;
+    float dsdx, dsdy, dtdx, dtdy;
+};
+struct sr_mapped sr_mapping_apply(const struct sr_mapping *m, const struct sr_point *x);
+extern const struct sr_param sr_mapping_params[]; // offsets inside struct sr_mapping
+/* Where struct sr_mapping (2-D) or struct sr_transform world_to_texture (3-D) sits in a model's struct; SIZE_MAX: nowhere */
+size_t sr_texture_mapping_offset(const struct sr_texture_model *model);
+size_t sr_texture_transform_offset(const struct sr_texture_model *model);
+
+#endif
