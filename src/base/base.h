@@ -9,9 +9,9 @@
 #include <stdint.h>
 
 #if defined(__GNUC__)
-#define SR_PRINTF(format, first) __attribute__((format(printf, format, first)))
+#define SR_PRINTF(text, first) __attribute__((format(printf, text, first)))
 #else
-#define SR_PRINTF(format, first)
+#define SR_PRINTF(text, first)
 #endif
 #define SR_LIKELY(x) __builtin_expect(!!(x), 1)
 #define SR_UNLIKELY(x) __builtin_expect(!!(x), 0)
