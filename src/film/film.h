@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: MIT */
+/* What remembers: the pixel filter, the sensor's response, sums and the statistics that give error bars.
+ *
+ * A pixel's samples come in blocks: parts of one scrambled net (ordinary images), or independently scrambled replicates
+ * (measurements). For each block only its sum is remembered, as sums of block sums and of their squares. */
+#ifndef SR_FILM_FILM_H
+#define SR_FILM_FILM_H
+
+#include "math/math.h"
+#include "sample/sample.h"
+#include "spectrum/spectrum.h"
+
+/* ---- pixel filters, by importance sampling: a sample's weight is constant but for its sign ---- */
+
+struct sr_filter_model {
+    const char *name;
+    const struct sr_param *params;
+    size_t size;
+    float (*value)(const void *self, sr_vec2 p);   // [1] not normalised; p from the pixel's centre [pixel]
+    sr_vec2 (*radius)(const void *self);           // [pixel]
+};
+extern const struct sr_filter_model *const sr_filter_models[]; // ends with NULL
+const struct sr_filter_model *sr_filter_model_find(const char *name);
+
+struct sr_filter {
+    const struct sr_filter_model *model;
+    const void *self;
+    sr_vec2 radius;                    // [pixel]
+    const struct sr_piecewise2 *table; // of |value|, on the filter's extent
+    const float *sign_weights;         // one a cell: sign times integral|f| / integral f
+    uint32_t nx, ny;
+};
+sr_status sr_filter_prepare(struct sr_arena *arena, const struct sr_filter_model *model, const void *self, struct sr_filter *out, struct sr_error *error);
+/* Offset from the pixel's centre [pixel]; *weight so that the mean of weight * L is the filtered value. */
+sr_vec2 sr_filter_sample(const struct sr_filter *f, sr_vec2 u, float *weight);
+
+/* ---- settings ---- */
+
+struct sr_film_settings {
+    int32_t width, height;             // [pixel] of the whole picture
+    int32_t x0, x1, y0, y1;            // [pixel] the part that is rendered: x0 <= x < x1
+    enum sr_colour_space_id space;     // of the output
+    float iso;                         // 100
+    float exposure_time;               // [s] shutter close - open
+    float white_balance;               // [K]; 0: none
+    float max_component;               // infinity: no clamping
+    const char *filename;
+};
+/* RGB of the output space from XYZ of the path: white balance and imaging ratio = exposure_time * iso / 100 included. */
+void sr_film_response(const struct sr_film_settings *s, float rgb_from_xyz[3][3]);
+
+/* ---- a film ---- */
+
+/* What a sample's first surface was, for the auxiliary channels. */
+struct sr_first_hit {
+    bool is_hit;
+    float albedo[3];      // [1] RGB in the output space
+    sr_vec3 n, ns, p;     // [1] [1] [m]
+    float depth;          // [m] distance along the ray
+    sr_vec2 uv;           // [1]
+    uint32_t material, object; // numbers, from 1; 0: none
+};
+
+/* One pixel's sums while a block is being made, owned by a worker. */
+struct sr_film_block {
+    double rgb[3];
+    uint32_t n;       // samples taken, dropped ones included
+    uint32_t dropped; // samples that were not finite: counted as zero
+    struct sr_first_hit first_sum; // sums of the continuous members
+    uint32_t hits, samples_seen;
+};
+
+struct sr_film_pixel {
+    double sum[3];    // of all samples
+    double square[3]; // sum over blocks of (block sum)^2 / (samples of the block)
+    uint32_t n, blocks, dropped;
+};
+
+struct sr_film {
+    struct sr_film_settings settings;
+    uint32_t width, height;        // of the rendered part
+    struct sr_film_pixel *pixels;  // width * height
+    bool has_aov;
+    struct sr_film_aov {
+        float albedo[3], n[3], ns[3], p[3], depth, uv[2]; // sums over hits
+        uint32_t hits, n_samples;
+        uint32_t material, object;
+    } *aov;
+};
+sr_status sr_film_create(const struct sr_film_settings *settings, bool with_aov, struct sr_film **out, struct sr_error *error);
+void sr_film_destroy(struct sr_film *film);
+void sr_film_block_add(struct sr_film_block *b, const float rgb[3], bool is_finite);
+void sr_film_block_add_first(struct sr_film_block *b, const struct sr_first_hit *h);
+void sr_film_store(struct sr_film *film, uint32_t x, uint32_t y, const struct sr_film_block *b); // x, y in the rendered part
+
+/* Mean of a pixel and the standard error of it. Ordinary images: the spread of the blocks, pooled over 5 x 5 pixels,
+ * conservative; measurements (replicates): of the pixel's own blocks, Student with blocks - 1 degrees. */
+void sr_film_pixel_mean(const struct sr_film *film, uint32_t x, uint32_t y, double mean[3]);
+void sr_film_pixel_error(const struct sr_film *film, uint32_t x, uint32_t y, bool pooled, double standard_error[3]);
+/* Mean over a rectangle of pixels of a linear form (w . rgb), with its standard error and degrees of freedom. Pixels are
+ * independent, so their variances add. */
+struct sr_film_mean {
+    double mean, standard_error, degrees;
+};
+struct sr_film_mean sr_film_region_mean(const struct sr_film *film, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1, const double w[3]);
+
+#endif

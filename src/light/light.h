@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: MIT */
+/* What shines: one file a kind; and how one is chosen among many.
+ *
+ * A light is two words, {model, self}. Radiance that leaves it is in W m^-2 sr^-1 nm^-1 over 683 lm/W in scenes that give
+ * photometric numbers, so that the integral with ybar is in cd/m^2 (docs/units.md). */
+#ifndef SR_LIGHT_LIGHT_H
+#define SR_LIGHT_LIGHT_H
+
+#include "sample/sample.h"
+#include "shape/shape.h"
+#include "spectrum/spectrum.h"
+#include "texture/texture.h"
+
+struct sr_light_model;
+struct sr_light {
+    const struct sr_light_model *model;
+    const void *self;
+};
+
+/* Light that would arrive at a reference point, were nothing in between. */
+struct sr_light_sample {
+    sr_spectrum L;      // radiance [.../sr]; for delta lights I/r^2 or E, and pdf is 1
+    sr_vec3 wi;         // [1] toward the light
+    float distance;     // [m]; INFINITY for light from outside the scene
+    sr_vec3 p, p_error, n; // [m] [m] [1] where it leaves; n = 0 for lights without surface; unused at INFINITY
+    float pdf;          // [1/sr]
+    bool is_delta;
+};
+
+/* What the tree of lights knows of a light (Conty Estevez & Kulla 2018). */
+struct sr_light_bounds {
+    struct sr_box box;     // [m]
+    sr_vec3 axis;          // [1]
+    float cos_theta_o;     // [1] spread of the normals about the axis
+    float cos_theta_e;     // [1] reach of the emission beyond them
+    float power;           // luminous integral of the emitted flux [cd sr]; 0: never chosen by the tree
+    bool two_sided;
+};
+
+struct sr_light_model {
+    const char *name;
+    const struct sr_param *params;
+    size_t size;
+    bool is_infinite, is_delta;
+    /* Normalises (power, illuminance, scale), checks. For shapes' lights the shape is already in self. */
+    sr_status (*prepare)(void *self, struct sr_arena *arena, struct sr_error *error);
+    /* Once the scene's extent is known (infinite lights); may be NULL. */
+    void (*place)(void *self, sr_vec3 scene_centre, float scene_radius);
+    bool (*sample)(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s);
+    /* Density [1/sr] of sample() for wi; `there` is the point met on a shape, NULL for infinite lights. Delta lights: 0. */
+    float (*pdf)(const void *self, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there);
+    /* Radiance leaving `there` toward w (area lights), or arriving along a ray that escapes in direction -w (infinite, there NULL). */
+    sr_spectrum (*Le)(const void *self, const struct sr_point *there, sr_vec3 w, const struct sr_wavelengths *wavelengths);
+    bool (*bounds)(const void *self, struct sr_light_bounds *bounds); // false: infinite
+    float (*power)(const void *self);                                 // as in sr_light_bounds
+};
+extern const struct sr_light_model *const sr_light_models[]; // ends with NULL
+const struct sr_light_model *sr_light_model_find(const char *name);
+
+/* The area light of one primitive: kept small, there may be a million. */
+struct sr_light_area {
+    struct sr_shape shape;
+    uint32_t primitive;
+    const struct sr_light_emission *emission; // shared by all primitives of the shape
+    float area;                               // [m^2]
+    bool is_ghost; // its surface is never met by rays (alpha 0 everywhere): only light sampling finds it, with weight 1
+};
+/* What AreaLightSource says. Prepared once for a shape (power needs the shape's whole area). */
+struct sr_light_emission {
+    struct sr_spd L;    // as given
+    float scale;        // [1]
+    bool two_sided;
+    float power;        // [lm]; NaN: not given
+    const char *filename;
+    struct sr_texels texels; // image over the surface's (u, v), or width 0
+    enum sr_colour_space_id space;
+    float derived_scale;     // of L: makes its luminance that of `scale` (or power) [cd/m^2]
+};
+extern const struct sr_param sr_light_emission_params[];
+sr_status sr_light_emission_prepare(struct sr_light_emission *e, float total_area, struct sr_arena *arena, struct sr_error *error);
+extern const struct sr_light_model sr_light_area;
+
+/* point, spot, distant: self structs are private to their files except what the importer sets: a transform. Where
+ * struct sr_transform light_to_world, struct sr_texels (image) and enum sr_colour_space_id sit; SIZE_MAX: nowhere. */
+size_t sr_light_transform_offset(const struct sr_light_model *model);
+size_t sr_light_texels_offset(const struct sr_light_model *model);
+size_t sr_light_space_offset(const struct sr_light_model *model);
+
+static inline bool sr_light_draw(struct sr_light light, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
+{
+    return light.model->sample(light.self, reference, u, w, s);
+}
+
+/* ---- choosing among many ---- */
+
+enum sr_light_choice { SR_LIGHTS_BVH, SR_LIGHTS_POWER, SR_LIGHTS_UNIFORM };
+
+struct sr_lights {
+    const struct sr_light *lights;
+    uint32_t count;
+    const uint32_t *infinite; // indices of the infinite lights
+    uint32_t infinite_count;
+    enum sr_light_choice choice;
+    const void *tree;         // private: nodes, each light's way to its leaf, alias table
+};
+sr_status sr_lights_build(struct sr_arena *arena, const struct sr_light *lights, uint32_t count, enum sr_light_choice choice,
+                          struct sr_lights *out, struct sr_error *error);
+/* Chooses one for a receiver with normal x->ns (zero for volumes); false: none can contribute. u is used up. */
+bool sr_lights_pick(const struct sr_lights *lights, const struct sr_point *x, float u, uint32_t *index, float *pmf);
+/* The probability with which pick would have chosen it. */
+float sr_lights_pmf(const struct sr_lights *lights, const struct sr_point *x, uint32_t index);
+
+#endif

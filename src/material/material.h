@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: MIT */
+/* A BSDF model bound to textures: gives the BSDF at a point. One file a material, named by the scene file's word. */
+#ifndef SR_MATERIAL_MATERIAL_H
+#define SR_MATERIAL_MATERIAL_H
+
+#include "bsdf/bsdf.h"
+#include "texture/texture.h"
+
+/* All that a material may look at. */
+struct sr_material_context {
+    const struct sr_point *x;
+    sr_vec3 wo;               // [1] in the world
+    struct sr_wavelengths *w; // a dispersive material ends the secondary wavelengths
+    float u;                  // [1] uniform number for stochastic choices (mix); may be rescaled and used again
+    uint32_t seed;            // of this vertex, for random walks
+};
+
+struct sr_material {
+    const struct sr_material_model *model; // NULL: interface, light passes as if nothing were there
+    const void *self;
+    struct sr_texture displacement;        // bump [m], or none
+    struct sr_texels normal_map;           // width 0: none
+};
+
+struct sr_material_model {
+    const char *name; // the scene file's word
+    const struct sr_param *params;
+    size_t size;
+    sr_status (*prepare)(void *self, struct sr_arena *arena, struct sr_error *error); // may be NULL
+    void (*bsdf)(const void *self, const struct sr_material_context *c, struct sr_bsdf *out);
+    /* mix: the part that is here, and what is left of the uniform number; NULL for all others */
+    const struct sr_material *(*choose)(const void *self, struct sr_material_context *c);
+};
+extern const struct sr_material_model *const sr_material_models[]; // ends with NULL
+const struct sr_material_model *sr_material_model_find(const char *name);
+
+/* The BSDF at x and the frame it lives in: applies mix, bump and normal map (which turn x->ns, x->dpdus), then asks the
+ * model. out->model NULL: interface. */
+void sr_material_shade(const struct sr_material *material, struct sr_point *x, sr_vec3 wo, float u, uint32_t seed,
+                       struct sr_wavelengths *w, struct sr_bsdf *out, struct sr_frame *frame);
+
+#endif

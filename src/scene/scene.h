@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT */
+/* All of it together: described, then finished, then never changed.
+ *
+ * Describe with sr_scene_add_*, call sr_scene_finish once; from then on any number of threads may ask. The first mistake
+ * sticks, and sr_scene_finish tells it. Everything that definitions point to lives in sr_scene_arena, or longer. */
+#ifndef SR_SCENE_SCENE_H
+#define SR_SCENE_SCENE_H
+
+#include "light/light.h"
+#include "material/material.h"
+#include "shape/shape.h"
+
+struct sr_scene;
+
+typedef struct sr_object_id {
+    uint32_t index1; // 0: the world itself
+} sr_object_id;
+
+struct sr_shape_def {
+    struct sr_shape shape;              // prepared
+    const struct sr_material *material; // NULL or without model: interface
+    struct sr_texture alpha;            // float texture [1], or none: opaque
+    const struct sr_light_emission *emission; // prepared; NULL: dark
+    sr_object_id object;                // the object that it belongs to; none: the world
+};
+
+struct sr_scene *sr_scene_create(void); // NULL: no memory
+void sr_scene_destroy(struct sr_scene *scene);
+struct sr_arena *sr_scene_arena(struct sr_scene *scene);
+struct sr_error *sr_scene_error(struct sr_scene *scene); // where mistakes stick
+void sr_scene_add_shape(struct sr_scene *scene, const struct sr_shape_def *def);
+sr_object_id sr_scene_add_object(struct sr_scene *scene);
+void sr_scene_add_instance(struct sr_scene *scene, sr_object_id object, const struct sr_transform *object_to_world);
+void sr_scene_add_light(struct sr_scene *scene, struct sr_light light);
+/* threads: for building the acceleration structure. */
+sr_status sr_scene_finish(struct sr_scene *scene, int threads, enum sr_light_choice choice);
+
+/* ---- what a finished scene answers ---- */
+
+/* A point of the scene: geometry and what is there. */
+struct sr_hit {
+    struct sr_point point;
+    float t;                            // [m] along the ray
+    const struct sr_material *material; // NULL: interface
+    uint32_t light;                     // index of the area light here, or SR_NO_LIGHT
+    uint32_t object;                    // number of the shape, from 1
+    uint32_t material_number;           // from 1; 0: interface
+};
+#define SR_NO_LIGHT UINT32_MAX
+
+/* The ray-casting operator: the nearest surface point along the ray. false: the ray escapes. */
+bool sr_raycast(const struct sr_scene *scene, const struct sr_ray *ray, struct sr_hit *hit);
+/* The visibility function V between x and the point (or, at infinite distance, the direction) of a light sample. */
+bool sr_visible(const struct sr_scene *scene, const struct sr_point *x, const struct sr_light_sample *s);
+/* A ray that leaves x toward w. */
+static inline struct sr_ray sr_leave(const struct sr_point *x, sr_vec3 w)
+{
+    return (struct sr_ray){.o = sr_point_offset(x, w), .d = w, .time = x->time, .t_max = INFINITY};
+}
+/* The point's footprint from the sensor ray's differentials, or a cone: fills dpdx … dvdy. */
+void sr_point_set_footprint(struct sr_point *x, sr_vec3 dpdx, sr_vec3 dpdy);
+
+const struct sr_lights *sr_scene_lights(const struct sr_scene *scene);
+struct sr_box sr_scene_bounds(const struct sr_scene *scene);
+
+struct sr_scene_counts {
+    uint64_t triangles, patches, quadrics, instances, objects, lights, materials; // [1]
+    uint64_t geometry_B, acceleration_B;                                          // [B]
+    uint64_t degenerate; // primitives of no area or with coordinates that are no numbers: left out
+    double build_s;      // [s]
+};
+struct sr_scene_counts sr_scene_count(const struct sr_scene *scene);
+
+#endif

@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: MIT */
+/* Where matter is: one file a shape.
+ *
+ * A shape consists of primitives (triangles of a mesh, patches; a quadric has one). All that is asked of a primitive is
+ * here: its box, where a ray meets it, what the surface is like there, and points on it drawn toward a receiver. After
+ * `prepare` everything is in the shape's space of placement (the world, or the object that is instanced). */
+#ifndef SR_SHAPE_SHAPE_H
+#define SR_SHAPE_SHAPE_H
+
+#include "math/math.h"
+#include "sample/sample.h"
+
+/* A point on a shape, drawn as seen from a reference point, or by area. */
+struct sr_shape_sample {
+    sr_vec3 p, p_error; // [m]
+    sr_vec3 n;          // [1] geometric normal, outside
+    sr_vec2 uv;         // [1]
+    float pdf;          // [1/sr] as seen from the reference point; [1/m^2] if there was none
+};
+
+struct sr_shape_placement {
+    struct sr_transform object_to_world;
+    bool reverse_orientation; // as the scene file says; handedness of the transform comes on top
+};
+
+struct sr_shape_model {
+    const char *name; // the scene file's word
+    const struct sr_param *params;
+    size_t size;
+
+    /* Checks the parameters, transforms what is stored in world space, computes what is derived. */
+    sr_status (*prepare)(void *self, const struct sr_shape_placement *placement, struct sr_arena *arena, struct sr_error *error);
+    uint32_t (*primitive_count)(const void *self);
+    struct sr_box (*bounds)(const void *self, uint32_t primitive);
+    float (*area)(const void *self, uint32_t primitive); // [m^2]
+
+    /* Nearest meeting in (t_min, t_max) of the ray o + t d; hit is the primitive's own coordinates. Triangles have none:
+     * the ray caster meets them itself, hit = barycentrics of vertices 1 and 2. */
+    bool (*intersect)(const void *self, uint32_t primitive, sr_vec3 o, sr_vec3 d, float t_min, float t_max, float *t, sr_vec2 *hit);
+    /* The surface at a hit; p is found from the hit, not from t, so that p_error is small. time and footprint are the caller's. */
+    void (*point)(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_point *x);
+    sr_vec2 (*uv)(const void *self, uint32_t primitive, sr_vec2 hit); // texture coordinates alone, for alpha tests
+
+    /* A point on the primitive for light that arrives at reference; NULL reference: by area. false: none. */
+    bool (*sample)(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec2 u, struct sr_shape_sample *s);
+    /* Density [1/sr] with which sample(reference) would have drawn the direction wi that meets the primitive at `there`. */
+    float (*pdf)(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there);
+    /* Cone of the outside normals: axis and cos of its half angle (-1: all directions). */
+    void (*normals)(const void *self, uint32_t primitive, sr_vec3 *axis, float *cos_theta);
+};
+extern const struct sr_shape_model *const sr_shape_models[]; // ends with NULL
+const struct sr_shape_model *sr_shape_model_find(const char *name);
+
+/* A shape of a scene: two words. */
+struct sr_shape {
+    const struct sr_shape_model *model;
+    const void *self;
+};
+
+/* ---- meshes: stored once, shared with the ray caster ---- */
+
+struct sr_shape_mesh {
+    struct sr_slice indices;      // int32, three a triangle
+    struct sr_slice P;            // sr_vec3 [m]; the array is followed by at least 4 readable bytes
+    struct sr_slice N;            // sr_vec3 [1] shading normals, or empty
+    struct sr_slice S;            // sr_vec3 [1] shading tangents, or empty
+    struct sr_slice uv;           // sr_vec2 [1], or empty
+    struct sr_slice face_indices; // int32, one a triangle, or empty
+    bool flip_normals;            // derived: outside is on the other side of the winding
+};
+/* Bilinear patches: four vertices a patch, (0,0) (1,0) (0,1) (1,1). Same members and the same meaning. */
+struct sr_shape_patches {
+    struct sr_slice indices; // int32, four a patch
+    struct sr_slice P, N, uv, face_indices;
+    bool flip_normals;
+};
+struct sr_shape_sphere {
+    float radius, z_min, z_max; // [m]
+    float phi_max;              // [deg]
+    struct sr_transform object_to_world;
+    bool flip_normals;
+    float theta_z_min, theta_z_max, phi_max_rad; // derived [rad]
+    bool is_full, is_rigid;                      // a full sphere; the transform keeps it a sphere: then centre and
+    sr_vec3 centre;                              // [m] in the world
+    float world_radius;                          // [m]
+};
+struct sr_shape_disk {
+    float height, radius, inner_radius, phi_max; // [m] [m] [m] [deg]
+    struct sr_transform object_to_world;
+    bool flip_normals;
+    float phi_max_rad;
+};
+struct sr_shape_cylinder {
+    float radius, z_min, z_max, phi_max; // [m] [m] [m] [deg]
+    struct sr_transform object_to_world;
+    bool flip_normals;
+    float phi_max_rad;
+};
+extern const struct sr_shape_model sr_shape_trianglemesh, sr_shape_bilinearmesh, sr_shape_sphere, sr_shape_disk, sr_shape_cylinder;
+
+#endif
