@@ -1,0 +1,193 @@
+/* SPDX-License-Identifier: MIT */
+/* Pixels as sums, and what the spread of their blocks says about their error.
+ *
+ *     mean = S / N,   S = sum over blocks of s_b,   N = sum of n_b
+ *     var(mean) <= [ sum s_b^2 / n_b  -  S^2 / N ] / ((B - 1) N)
+ *
+ * With independent blocks (replicates) this is the unbiased estimate. The blocks of one scrambled net repel each other, so
+ * that the mean varies less than this says: the estimate is conservative (docs/decisions/0003-error-bars.md). */
+#include "film/film.h"
+
+#include <string.h>
+
+static const uint32_t MAX_SIDE = 1u << 20; // [pixel]
+
+sr_status sr_film_create(const struct sr_film_settings *settings, bool with_aov, struct sr_film **out, struct sr_error *error)
+{
+    *out = NULL;
+    int64_t w = (int64_t)settings->x1 - settings->x0, h = (int64_t)settings->y1 - settings->y0;
+    if (w <= 0 || h <= 0)
+        return sr_fail(error, SR_ERROR_INPUT, "the picture has no pixels: crop x %d to %d, y %d to %d", settings->x0, settings->x1, settings->y0, settings->y1);
+    if (w > MAX_SIDE || h > MAX_SIDE)
+        return sr_fail(error, SR_ERROR_RESOURCE, "a picture of %lld x %lld pixels is too large: at most %u a side", (long long)w, (long long)h, MAX_SIDE);
+    struct sr_film *film = sr_alloc(sizeof *film);
+    size_t n = (size_t)w * (size_t)h;
+    if (film) {
+        film->pixels = sr_alloc(n * sizeof *film->pixels);
+        film->aov = with_aov ? sr_alloc(n * sizeof *film->aov) : NULL;
+    }
+    if (!film || !film->pixels || (with_aov && !film->aov)) {
+        sr_film_destroy(film);
+        return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for a picture of %lld x %lld pixels", (long long)w, (long long)h);
+    }
+    film->settings = *settings;
+    film->width = (uint32_t)w;
+    film->height = (uint32_t)h;
+    film->has_aov = with_aov;
+    *out = film;
+    return SR_OK;
+}
+
+void sr_film_destroy(struct sr_film *film)
+{
+    if (!film)
+        return;
+    sr_free(film->pixels);
+    sr_free(film->aov);
+    sr_free(film);
+}
+
+void sr_film_response(const struct sr_film_settings *s, float rgb_from_xyz[3][3])
+{
+    const struct sr_colour_space *space = sr_colour_space(s->space);
+    double balance[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    if (s->white_balance > 0) {
+        double source[2];
+        sr_daylight_xy((double)s->white_balance, source);
+        sr_white_balance(source, space->xy[3], balance);
+    }
+    double imaging_ratio = (double)s->exposure_time * (double)s->iso / 100;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+            double sum = 0;
+            for (int k = 0; k < 3; ++k)
+                sum += space->rgb_from_xyz[i][k] * balance[k][j];
+            rgb_from_xyz[i][j] = (float)(sum * imaging_ratio);
+        }
+}
+
+void sr_film_block_add(struct sr_film_block *b, const float rgb[3], bool is_finite)
+{
+    b->n += 1;
+    if (!is_finite) {
+        b->dropped += 1;
+        return;
+    }
+    for (int c = 0; c < 3; ++c)
+        b->rgb[c] += (double)rgb[c];
+}
+
+void sr_film_block_add_first(struct sr_film_block *b, const struct sr_first_hit *h)
+{
+    b->samples_seen += 1;
+    if (!h->is_hit)
+        return;
+    struct sr_first_hit *s = &b->first_sum;
+    if (b->hits++ == 0) {
+        s->material = h->material; // numbers have no mean: the first sample's stand
+        s->object = h->object;
+    }
+    for (int c = 0; c < 3; ++c)
+        s->albedo[c] += h->albedo[c];
+    s->n = sr_add(s->n, h->n);
+    s->ns = sr_add(s->ns, h->ns);
+    s->p = sr_add(s->p, h->p);
+    s->depth += h->depth;
+    s->uv = (sr_vec2){s->uv.x + h->uv.x, s->uv.y + h->uv.y};
+}
+
+void sr_film_store(struct sr_film *film, uint32_t x, uint32_t y, const struct sr_film_block *b)
+{
+    size_t i = (size_t)y * film->width + x;
+    struct sr_film_pixel *p = &film->pixels[i];
+    for (int c = 0; c < 3; ++c) {
+        p->sum[c] += b->rgb[c];
+        p->square[c] += b->n ? b->rgb[c] * b->rgb[c] / b->n : 0;
+    }
+    p->n += b->n;
+    p->blocks += 1;
+    p->dropped += b->dropped;
+    if (!film->has_aov)
+        return;
+    struct sr_film_aov *a = &film->aov[i];
+    const struct sr_first_hit *s = &b->first_sum;
+    if (a->hits == 0) {
+        a->material = s->material;
+        a->object = s->object;
+    }
+    for (int c = 0; c < 3; ++c) {
+        a->albedo[c] += s->albedo[c];
+        a->n[c] += sr_component(s->n, c);
+        a->ns[c] += sr_component(s->ns, c);
+        a->p[c] += sr_component(s->p, c);
+    }
+    a->depth += s->depth;
+    a->uv[0] += s->uv.x;
+    a->uv[1] += s->uv.y;
+    a->hits += b->hits;
+    a->n_samples += b->samples_seen;
+}
+
+void sr_film_pixel_mean(const struct sr_film *film, uint32_t x, uint32_t y, double mean[3])
+{
+    const struct sr_film_pixel *p = &film->pixels[(size_t)y * film->width + x];
+    for (int c = 0; c < 3; ++c)
+        mean[c] = p->n ? p->sum[c] / p->n : 0;
+}
+
+/* Variance of the mean of w . rgb, or of one channel c. NaN with fewer than two blocks. */
+static double mean_variance(const struct sr_film_pixel *p, int c)
+{
+    if (p->blocks < 2)
+        return NAN;
+    double spread = p->square[c] - p->sum[c] * p->sum[c] / p->n;
+    return fmax(0, spread) / ((double)(p->blocks - 1) * p->n);
+}
+
+enum { POOL = 2 }; // pixels to each side: 5 x 5
+
+void sr_film_pixel_error(const struct sr_film *film, uint32_t x, uint32_t y, bool pooled, double standard_error[3])
+{
+    int reach = pooled ? POOL : 0;
+    for (int c = 0; c < 3; ++c) {
+        double sum = 0, count = 0, own = mean_variance(&film->pixels[(size_t)y * film->width + x], c);
+        for (int64_t j = (int64_t)y - reach; j <= (int64_t)y + reach; ++j)
+            for (int64_t i = (int64_t)x - reach; i <= (int64_t)x + reach; ++i) {
+                if (i < 0 || j < 0 || i >= film->width || j >= film->height)
+                    continue;
+                double v = mean_variance(&film->pixels[(size_t)j * film->width + (size_t)i], c);
+                if (isfinite(v)) {
+                    sum += v;
+                    count += 1;
+                }
+            }
+        // the neighbours steady the estimate; a pixel that is seen to vary more than they do keeps its own
+        standard_error[c] = count ? sqrt(fmax(sum / count, isfinite(own) ? own : 0)) : NAN;
+    }
+}
+
+struct sr_film_mean sr_film_region_mean(const struct sr_film *film, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1, const double w[3])
+{
+    struct sr_film_mean m = {0};
+    double variance = 0, fourth = 0, blocks = 0;
+    double count = (double)(x1 - x0) * (double)(y1 - y0);
+    for (uint32_t y = y0; y < y1; ++y)
+        for (uint32_t x = x0; x < x1; ++x) {
+            const struct sr_film_pixel *p = &film->pixels[(size_t)y * film->width + x];
+            double se = 0;
+            for (int c = 0; c < 3; ++c) {
+                m.mean += p->n ? w[c] * p->sum[c] / p->n : 0;
+                // the channels of a sample go together: standard deviations add, which is the upper bound
+                double v = mean_variance(p, c);
+                se += fabs(w[c]) * sqrt(isfinite(v) ? v : 0);
+            }
+            variance += se * se;
+            fourth += se * se * se * se;
+            blocks = p->blocks > blocks ? p->blocks : blocks;
+        }
+    m.mean /= count;
+    m.standard_error = blocks >= 2 ? sqrt(variance) / count : NAN;
+    // Welch and Satterthwaite: many pixels of few blocks each have many degrees of freedom together
+    m.degrees = fourth > 0 ? fmax(1, (blocks - 1) * variance * variance / fourth) : fmax(1, blocks - 1);
+    return m;
+}

@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: MIT */
+/* The acceleration structure: one Embree scene for the world and one for each object, robust traversal.
+ *
+ * Triangles are Embree's own; patches and quadrics are user geometry met by their exact equations. Alpha is a filter. */
+#include "scene/private.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static bool count_memory(void *user, ssize_t bytes, bool post)
+{
+    (void)post;
+    struct sr_scene *scene = user;
+    __atomic_fetch_add(&scene->counts.acceleration_B, (uint64_t)bytes, __ATOMIC_RELAXED);
+    return true;
+}
+
+/* ---- callbacks of the ray caster ---- */
+
+static void user_bounds(const struct RTCBoundsFunctionArguments *a)
+{
+    const struct placed_shape *s = a->geometryUserPtr;
+    struct sr_box b = s->shape.model->bounds(s->shape.self, a->primID);
+    *a->bounds_o = (struct RTCBounds){.lower_x = b.lo.x, .lower_y = b.lo.y, .lower_z = b.lo.z,
+                                      .upper_x = b.hi.x, .upper_y = b.hi.y, .upper_z = b.hi.z};
+}
+
+static bool meet_user(const struct placed_shape *s, uint32_t primitive, const struct RTCRay *r, float *t, sr_vec2 *hit)
+{
+    sr_vec3 o = {r->org_x, r->org_y, r->org_z}, d = {r->dir_x, r->dir_y, r->dir_z};
+    float t_min = r->tnear;
+    // behind a hole of the alpha mask the same primitive may be met again
+    while (s->shape.model->intersect(s->shape.self, primitive, o, d, t_min, r->tfar, t, hit)) {
+        if (!s->alpha.model || scene_alpha_accepts(s, primitive, *hit, o, d))
+            return true;
+        t_min = nextafterf(*t, INFINITY) * (1 + 4 * SR_MACHINE_EPSILON);
+    }
+    return false;
+}
+
+static void user_intersect(const struct RTCIntersectFunctionNArguments *a)
+{
+    if (!a->valid[0])
+        return;
+    struct RTCRayHit *rh = (struct RTCRayHit *)a->rayhit;
+    float t;
+    sr_vec2 hit;
+    if (!meet_user(a->geometryUserPtr, a->primID, &rh->ray, &t, &hit))
+        return;
+    rh->ray.tfar = t;
+    rh->hit.u = hit.x;
+    rh->hit.v = hit.y;
+    rh->hit.primID = a->primID;
+    rh->hit.geomID = a->geomID;
+    rh->hit.instID[0] = a->context->instID[0];
+}
+
+static void user_occluded(const struct RTCOccludedFunctionNArguments *a)
+{
+    if (!a->valid[0])
+        return;
+    struct RTCRay *r = (struct RTCRay *)a->ray;
+    const struct placed_shape *s = a->geometryUserPtr;
+    if (!s->material) // an interface that glows lets light pass
+        return;
+    float t;
+    sr_vec2 hit;
+    if (meet_user(s, a->primID, r, &t, &hit))
+        r->tfar = -INFINITY;
+}
+
+static void filter_intersect(const struct RTCFilterFunctionNArguments *a)
+{
+    if (a->valid[0] != -1)
+        return;
+    const struct RTCRay *r = (const struct RTCRay *)a->ray;
+    const struct RTCHit *h = (const struct RTCHit *)a->hit;
+    sr_vec3 o = {r->org_x, r->org_y, r->org_z}, d = {r->dir_x, r->dir_y, r->dir_z};
+    if (!scene_alpha_accepts(a->geometryUserPtr, h->primID, (sr_vec2){h->u, h->v}, o, d))
+        a->valid[0] = 0;
+}
+
+static void filter_occluded(const struct RTCFilterFunctionNArguments *a)
+{
+    if (a->valid[0] != -1)
+        return;
+    const struct placed_shape *s = a->geometryUserPtr;
+    if (!s->material)
+        a->valid[0] = 0;
+    else if (s->alpha.model)
+        filter_intersect(a);
+}
+
+bool scene_alpha_accepts(const struct placed_shape *s, uint32_t primitive, sr_vec2 hit, sr_vec3 o, sr_vec3 d)
+{
+    struct sr_point x = {.uv = s->shape.model->uv(s->shape.self, primitive, hit)};
+    float alpha = sr_texture_float(s->alpha, &x);
+    if (alpha >= 1)
+        return true;
+    if (!(alpha > 0))
+        return false;
+    uint32_t bits[6], h = sr_hash_combine(s->number, primitive);
+    memcpy(bits, &o, sizeof o);
+    memcpy(bits + 3, &d, sizeof d);
+    for (int i = 0; i < 6; ++i)
+        h = sr_hash_combine(h, bits[i]);
+    return sr_u32_to_float(h) < alpha;
+}
+
+/* ---- building ---- */
+
+/* Primitives that no ray can meet are counted, so that nothing is lost in silence. */
+static void count_degenerate(struct sr_scene *scene, const struct placed_shape *s)
+{
+    uint32_t n = s->shape.model->primitive_count(s->shape.self);
+    for (uint32_t i = 0; i < n; ++i)
+        scene->counts.degenerate += !(s->shape.model->area(s->shape.self, i) > 0);
+}
+
+static RTCGeometry make_geometry(struct sr_scene *scene, const struct placed_shape *s)
+{
+    RTCGeometry g;
+    if (s->is_mesh) {
+        const struct sr_shape_mesh *m = s->shape.self;
+        g = rtcNewGeometry(scene->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, m->P.data, 0, sizeof(sr_vec3), m->P.count);
+        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, m->indices.data, 0, 3 * sizeof(int32_t), m->indices.count / 3);
+        if (s->alpha.model)
+            rtcSetGeometryIntersectFilterFunction(g, filter_intersect);
+        if (s->alpha.model || !s->material)
+            rtcSetGeometryOccludedFilterFunction(g, filter_occluded);
+    } else {
+        g = rtcNewGeometry(scene->device, RTC_GEOMETRY_TYPE_USER);
+        rtcSetGeometryUserPrimitiveCount(g, s->shape.model->primitive_count(s->shape.self));
+        rtcSetGeometryBoundsFunction(g, user_bounds, NULL);
+        rtcSetGeometryIntersectFunction(g, user_intersect);
+        rtcSetGeometryOccludedFunction(g, user_occluded);
+    }
+    rtcSetGeometryUserData(g, (void *)(uintptr_t)s);
+    rtcCommitGeometry(g);
+    return g;
+}
+
+static void attach(RTCScene embree, RTCGeometry g, uint32_t number)
+{
+    rtcAttachGeometryByID(embree, g, number);
+    rtcReleaseGeometry(g);
+}
+
+static void build_object(struct sr_scene *scene, struct object *object)
+{
+    object->embree = rtcNewScene(scene->device);
+    rtcSetSceneFlags(object->embree, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(object->embree, RTC_BUILD_QUALITY_MEDIUM);
+    for (uint32_t i = 0; i < object->shape_count; ++i) {
+        count_degenerate(scene, &object->shapes[i]);
+        attach(object->embree, make_geometry(scene, &object->shapes[i]), i);
+    }
+}
+
+static void add_instances(struct sr_scene *scene, struct object *world)
+{
+    const struct instance_def *defs = scene->instance_defs.data;
+    size_t n = scene->instance_defs.count;
+    struct instance *instances = sr_arena_alloc(&scene->arena, n * sizeof *instances);
+    if (!instances) {
+        sr_fail(&scene->error, SR_ERROR_RESOURCE, "not enough memory for %zu instances", n);
+        return;
+    }
+    scene->instances = instances;
+    scene->first_instance = world->shape_count;
+    for (size_t i = 0; i < n; ++i) {
+        struct object *object = ((struct object **)scene->objects.data)[defs[i].object.index1];
+        instances[i] = (struct instance){defs[i].object_to_world, object};
+        RTCGeometry g = rtcNewGeometry(scene->device, RTC_GEOMETRY_TYPE_INSTANCE);
+        rtcSetGeometryInstancedScene(g, object->embree);
+        float m[12]; // rows first, three of them
+        for (int row = 0; row < 3; ++row)
+            for (int column = 0; column < 4; ++column)
+                m[4 * row + column] = defs[i].object_to_world.m[row][column];
+        rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, m);
+        rtcCommitGeometry(g);
+        attach(world->embree, g, scene->first_instance + (uint32_t)i);
+    }
+    sr_array_free(&scene->instance_defs);
+}
+
+static void embree_error(void *user, enum RTCError code, const char *text)
+{
+    struct sr_scene *scene = user;
+    sr_fail(&scene->error, code == RTC_ERROR_OUT_OF_MEMORY ? SR_ERROR_RESOURCE : SR_ERROR_INPUT,
+            "the acceleration structure cannot be built: %s", text ? text : "unknown reason");
+}
+
+void scene_build_embree(struct sr_scene *scene, int threads)
+{
+    char settings[64];
+    snprintf(settings, sizeof settings, "threads=%d", threads > 0 ? threads : 1);
+    scene->device = rtcNewDevice(settings);
+    if (!scene->device) {
+        sr_fail(&scene->error, SR_ERROR_RESOURCE, "Embree does not start (error %d)", (int)rtcGetDeviceError(NULL));
+        return;
+    }
+    rtcSetDeviceErrorFunction(scene->device, embree_error, scene);
+    rtcSetDeviceMemoryMonitorFunction(scene->device, count_memory, scene);
+    struct object **objects = scene->objects.data;
+    for (size_t i = scene->objects.count; i-- > 0;) { // objects before the world that holds them
+        build_object(scene, objects[i]);
+        if (i == 0)
+            add_instances(scene, objects[0]);
+        rtcCommitScene(objects[i]->embree);
+    }
+    scene->embree = objects[0]->embree;
+    struct RTCBounds b;
+    rtcGetSceneBounds(scene->embree, &b);
+    scene->bounds = (struct sr_box){{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
+    if (sr_box_is_empty(scene->bounds))
+        scene->bounds = (struct sr_box){{0, 0, 0}, {0, 0, 0}};
+}

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: MIT */
+/* The inside of a scene: only files of this folder include it, and nothing else includes Embree. */
+#ifndef SR_SCENE_PRIVATE_H
+#define SR_SCENE_PRIVATE_H
+
+#include "scene/scene.h"
+
+#include <embree3/rtcore.h>
+
+/* A shape where the ray caster finds it: by its geometry number within the world or within an object. */
+struct placed_shape {
+    struct sr_shape shape;
+    const struct sr_material *material;
+    struct sr_texture alpha;
+    uint32_t first_light;     // SR_NO_LIGHT: dark
+    uint32_t number;          // from 1, in the order of description
+    uint32_t material_number; // from 1; 0: interface
+    bool is_mesh;             // of triangles, which Embree meets itself
+};
+
+/* What instances share; index 0 is the world. */
+struct object {
+    struct sr_array defs;          // struct sr_shape_def, until finished
+    struct placed_shape *shapes;   // by geometry number
+    uint32_t shape_count;
+    RTCScene embree;
+};
+
+struct instance {
+    struct sr_transform object_to_world;
+    const struct object *object;
+};
+
+struct sr_scene {
+    struct sr_arena arena;
+    struct sr_error error;
+    bool is_finished;
+    struct sr_array objects;        // struct object *
+    struct sr_array instance_defs;  // struct instance_def
+    struct sr_array light_defs;     // struct sr_light
+    struct sr_array material_list;  // const struct sr_material *, in the order of first use
+    const struct object *world;
+    const struct instance *instances; // by geometry number - world's shape count
+    uint32_t first_instance;
+    RTCDevice device;
+    RTCScene embree;
+    struct sr_lights lights;
+    struct sr_box bounds;
+    struct sr_scene_counts counts;
+};
+
+struct instance_def {
+    struct sr_transform object_to_world;
+    sr_object_id object;
+};
+
+void scene_build_embree(struct sr_scene *scene, int threads);
+/* Alpha test of a hit: true where the surface is. Partial coverage is decided by a hash of the ray. */
+bool scene_alpha_accepts(const struct placed_shape *s, uint32_t primitive, sr_vec2 hit, sr_vec3 o, sr_vec3 d);
+
+#endif

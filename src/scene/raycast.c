@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: MIT */
+/* The two operators of the theory: raycast(p, w), the nearest surface point; visible(p, p'), the visibility function V. */
+#include "scene/private.h"
+
+/* A shadow ray ends this much before its target, which lies on a surface itself. */
+#define SHADOW_SHARE (1 - 1e-4f)
+
+static void fill_ray(struct RTCRay *r, sr_vec3 o, sr_vec3 d, float time, float t_max)
+{
+    typedef float f4 __attribute__((vector_size(16)));
+    *(f4 *)&r->org_x = (f4){o.x, o.y, o.z, 0};    // org, tnear
+    *(f4 *)&r->dir_x = (f4){d.x, d.y, d.z, time}; // dir, time
+    r->tfar = t_max;
+    r->mask = ~0u;
+    r->id = 0;
+    r->flags = 0;
+}
+
+/* The point of an instanced object, in the world. */
+static void to_world(struct sr_point *x, const struct sr_transform *t)
+{
+    sr_vec3 error;
+    x->p = sr_transform_point_error(t, x->p, x->p_error, &error);
+    x->p_error = error;
+    x->n = sr_normalize(sr_transform_normal(t, x->n));
+    x->ns = sr_face_forward(sr_normalize(sr_transform_normal(t, x->ns)), x->n);
+    x->dpdu = sr_transform_vector(t, x->dpdu);
+    x->dpdv = sr_transform_vector(t, x->dpdv);
+    x->dpdus = sr_transform_vector(t, x->dpdus);
+    x->dndu = sr_transform_normal(t, x->dndu);
+    x->dndv = sr_transform_normal(t, x->dndv);
+}
+
+bool sr_raycast(const struct sr_scene *scene, const struct sr_ray *ray, struct sr_hit *hit)
+{
+    struct RTCRayHit rh;
+    fill_ray(&rh.ray, ray->o, ray->d, ray->time, ray->t_max);
+    rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(scene->embree, &context, &rh);
+    if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+        return false;
+
+    const struct instance *instance = rh.hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? NULL : &scene->instances[rh.hit.instID[0] - scene->first_instance];
+    const struct object *object = instance ? instance->object : scene->world;
+    const struct placed_shape *s = &object->shapes[rh.hit.geomID];
+    s->shape.model->point(s->shape.self, rh.hit.primID, (sr_vec2){rh.hit.u, rh.hit.v}, &hit->point);
+    hit->point.time = ray->time;
+    if (instance)
+        to_world(&hit->point, &instance->object_to_world);
+    hit->t = rh.ray.tfar;
+    hit->material = s->material;
+    hit->light = s->first_light == SR_NO_LIGHT ? SR_NO_LIGHT : s->first_light + rh.hit.primID;
+    hit->object = s->number;
+    hit->material_number = s->material_number;
+    return true;
+}
+
+bool sr_visible(const struct sr_scene *scene, const struct sr_point *x, const struct sr_light_sample *s)
+{
+    struct RTCRay r;
+    sr_vec3 o = sr_point_offset(x, s->wi);
+    if (isinf(s->distance)) {
+        fill_ray(&r, o, s->wi, x->time, INFINITY);
+    } else {
+        struct sr_point target = {.p = s->p, .p_error = s->p_error, .n = s->n};
+        sr_vec3 to = s->n.x == 0 && s->n.y == 0 && s->n.z == 0 ? s->p : sr_point_offset(&target, sr_neg(s->wi));
+        fill_ray(&r, o, sr_sub(to, o), x->time, SHADOW_SHARE);
+    }
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(scene->embree, &context, &r);
+    return r.tfar >= 0;
+}
+
+void sr_point_set_footprint(struct sr_point *x, sr_vec3 dpdx, sr_vec3 dpdy)
+{
+    x->dpdx = dpdx;
+    x->dpdy = dpdy;
+    // least squares of dpdx = dudx dpdu + dvdx dpdv
+    float a00 = sr_dot(x->dpdu, x->dpdu), a01 = sr_dot(x->dpdu, x->dpdv), a11 = sr_dot(x->dpdv, x->dpdv);
+    float determinant = sr_difference_of_products(a00, a11, a01, a01);
+    float inverse = determinant != 0 ? 1 / determinant : 0;
+    if (!isfinite(inverse))
+        inverse = 0;
+    float b0x = sr_dot(x->dpdu, dpdx), b1x = sr_dot(x->dpdv, dpdx), b0y = sr_dot(x->dpdu, dpdy), b1y = sr_dot(x->dpdv, dpdy);
+    x->dudx = sr_clamp((a11 * b0x - a01 * b1x) * inverse, -1e8f, 1e8f);
+    x->dvdx = sr_clamp((a00 * b1x - a01 * b0x) * inverse, -1e8f, 1e8f);
+    x->dudy = sr_clamp((a11 * b0y - a01 * b1y) * inverse, -1e8f, 1e8f);
+    x->dvdy = sr_clamp((a00 * b1y - a01 * b0y) * inverse, -1e8f, 1e8f);
+}

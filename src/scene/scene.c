@@ -1,0 +1,218 @@
+/* SPDX-License-Identifier: MIT */
+/* The description of a scene, and its end: the list of lights, the order of things, the acceleration structure. */
+#include "scene/private.h"
+
+#include <string.h>
+
+static void no_memory(struct sr_scene *scene)
+{
+    sr_fail(&scene->error, SR_ERROR_RESOURCE, "not enough memory for the scene (%zu MiB so far)", scene->arena.total >> 20);
+}
+
+struct sr_scene *sr_scene_create(void)
+{
+    struct sr_scene *scene = sr_alloc(sizeof *scene);
+    if (!scene)
+        return NULL;
+    sr_scene_add_object(scene); // the world
+    return scene;
+}
+
+void sr_scene_destroy(struct sr_scene *scene)
+{
+    if (!scene)
+        return;
+    struct object **objects = scene->objects.data;
+    for (size_t i = 0; i < scene->objects.count; ++i) {
+        if (objects[i] && objects[i]->embree)
+            rtcReleaseScene(objects[i]->embree);
+        if (objects[i])
+            sr_array_free(&objects[i]->defs);
+    }
+    if (scene->device)
+        rtcReleaseDevice(scene->device);
+    sr_array_free(&scene->objects);
+    sr_array_free(&scene->instance_defs);
+    sr_array_free(&scene->light_defs);
+    sr_array_free(&scene->material_list);
+    sr_arena_free(&scene->arena);
+    sr_free(scene);
+}
+
+struct sr_arena *sr_scene_arena(struct sr_scene *scene)
+{
+    return &scene->arena;
+}
+
+struct sr_error *sr_scene_error(struct sr_scene *scene)
+{
+    return &scene->error;
+}
+
+sr_object_id sr_scene_add_object(struct sr_scene *scene)
+{
+    struct object **slot = sr_array_push(&scene->objects, sizeof *slot);
+    if (slot)
+        *slot = sr_arena_alloc(&scene->arena, sizeof **slot);
+    if (!slot || !*slot)
+        no_memory(scene);
+    return (sr_object_id){(uint32_t)scene->objects.count - 1}; // the world is the first, its handle "none"
+}
+
+void sr_scene_add_shape(struct sr_scene *scene, const struct sr_shape_def *def)
+{
+    if (scene->error.status != SR_OK)
+        return;
+    struct object *object = ((struct object **)scene->objects.data)[def->object.index1];
+    struct sr_shape_def *copy = sr_array_push(&object->defs, sizeof *copy);
+    if (!copy) {
+        no_memory(scene);
+        return;
+    }
+    *copy = *def;
+}
+
+void sr_scene_add_instance(struct sr_scene *scene, sr_object_id object, const struct sr_transform *object_to_world)
+{
+    if (scene->error.status != SR_OK)
+        return;
+    struct instance_def *def = sr_array_push(&scene->instance_defs, sizeof *def);
+    if (!def)
+        no_memory(scene);
+    else
+        *def = (struct instance_def){*object_to_world, object};
+}
+
+void sr_scene_add_light(struct sr_scene *scene, struct sr_light light)
+{
+    if (scene->error.status != SR_OK)
+        return;
+    struct sr_light *copy = sr_array_push(&scene->light_defs, sizeof *copy);
+    if (!copy)
+        no_memory(scene);
+    else
+        *copy = light;
+}
+
+/* ---- finishing ---- */
+
+static uint32_t number_material(struct sr_scene *scene, const struct sr_material *material)
+{
+    if (!material || !material->model)
+        return 0;
+    const struct sr_material **list = scene->material_list.data;
+    for (size_t i = scene->material_list.count; i-- > 0;) // the newest is the likeliest
+        if (list[i] == material)
+            return (uint32_t)i + 1;
+    const struct sr_material **slot = sr_array_push(&scene->material_list, sizeof *slot);
+    if (!slot) {
+        no_memory(scene);
+        return 0;
+    }
+    *slot = material;
+    return (uint32_t)scene->material_list.count;
+}
+
+/* One light for each primitive of a glowing shape. */
+static uint32_t add_area_lights(struct sr_scene *scene, const struct sr_shape_def *def, bool is_ghost)
+{
+    uint32_t n = def->shape.model->primitive_count(def->shape.self);
+    uint32_t first = (uint32_t)scene->light_defs.count;
+    struct sr_light_area *areas = sr_arena_alloc(&scene->arena, (size_t)n * sizeof *areas);
+    if (!areas || !sr_array_reserve(&scene->light_defs, first + (size_t)n, sizeof(struct sr_light))) {
+        no_memory(scene);
+        return SR_NO_LIGHT;
+    }
+    for (uint32_t i = 0; i < n; ++i) {
+        areas[i] = (struct sr_light_area){.shape = def->shape, .primitive = i, .emission = def->emission,
+                                          .area = def->shape.model->area(def->shape.self, i), .is_ghost = is_ghost};
+        sr_scene_add_light(scene, (struct sr_light){&sr_light_area, &areas[i]});
+    }
+    return first;
+}
+
+/* What rays can meet of an object, in the order of description. */
+static void place_shapes(struct sr_scene *scene, struct object *object, bool is_world)
+{
+    const struct sr_shape_def *defs = object->defs.data;
+    object->shapes = sr_arena_alloc(&scene->arena, object->defs.count * sizeof *object->shapes);
+    if (!object->shapes) {
+        no_memory(scene);
+        return;
+    }
+    for (size_t i = 0; i < object->defs.count; ++i) {
+        const struct sr_shape_def *def = &defs[i];
+        uint32_t material_number = number_material(scene, def->material);
+        uint32_t number = ++scene->counts.objects > UINT32_MAX ? UINT32_MAX : (uint32_t)scene->counts.objects;
+        float alpha = 1;
+        bool is_invisible = def->alpha.model && sr_texture_is_constant_float(def->alpha, &alpha) && alpha <= 0;
+        bool has_light = def->emission && is_world;
+        uint32_t first_light = has_light ? add_area_lights(scene, def, is_invisible) : SR_NO_LIGHT;
+        uint32_t n = def->shape.model->primitive_count(def->shape.self);
+        bool is_mesh = def->shape.model == &sr_shape_trianglemesh;
+        *(is_mesh ? &scene->counts.triangles : def->shape.model == &sr_shape_bilinearmesh ? &scene->counts.patches : &scene->counts.quadrics) += n;
+        // a surface that neither scatters nor glows is not there; nor is one without coverage
+        if (n == 0 || is_invisible || (material_number == 0 && !has_light))
+            continue;
+        object->shapes[object->shape_count++] = (struct placed_shape){
+            .shape = def->shape, .material = material_number ? def->material : NULL, .first_light = first_light, .number = number,
+            .alpha = def->alpha.model && !(sr_texture_is_constant_float(def->alpha, &alpha) && alpha >= 1) ? def->alpha : (struct sr_texture){0},
+            .material_number = material_number, .is_mesh = is_mesh};
+    }
+    sr_array_free(&object->defs);
+}
+
+static void place_lights(struct sr_scene *scene, enum sr_light_choice choice)
+{
+    sr_vec3 centre;
+    float radius;
+    sr_box_bounding_sphere(scene->bounds, &centre, &radius);
+    uint32_t n = (uint32_t)scene->light_defs.count;
+    struct sr_light *lights = sr_arena_copy(&scene->arena, scene->light_defs.data, n * sizeof *lights);
+    if (n && !lights) {
+        no_memory(scene);
+        return;
+    }
+    sr_array_free(&scene->light_defs);
+    for (uint32_t i = 0; i < n; ++i)
+        if (lights[i].model->place)
+            lights[i].model->place((void *)(uintptr_t)lights[i].self, centre, radius); // the last change before it is shared
+    scene->counts.lights = n;
+    scene->counts.materials = scene->material_list.count;
+    sr_lights_build(&scene->arena, lights, n, choice, &scene->lights, &scene->error);
+}
+
+sr_status sr_scene_finish(struct sr_scene *scene, int threads, enum sr_light_choice choice)
+{
+    if (scene->error.status != SR_OK || scene->is_finished)
+        return scene->error.status;
+    double start_s = sr_clock_s();
+    struct object **objects = scene->objects.data;
+    for (size_t i = 0; i < scene->objects.count && scene->error.status == SR_OK; ++i)
+        place_shapes(scene, objects[i], i == 0);
+    scene->world = objects[0];
+    scene->counts.instances = scene->instance_defs.count;
+    if (scene->error.status == SR_OK)
+        scene_build_embree(scene, threads);
+    if (scene->error.status == SR_OK)
+        place_lights(scene, choice);
+    scene->counts.geometry_B = scene->arena.total;
+    scene->counts.build_s = sr_clock_s() - start_s;
+    scene->is_finished = scene->error.status == SR_OK;
+    return scene->error.status;
+}
+
+const struct sr_lights *sr_scene_lights(const struct sr_scene *scene)
+{
+    return &scene->lights;
+}
+
+struct sr_box sr_scene_bounds(const struct sr_scene *scene)
+{
+    return scene->bounds;
+}
+
+struct sr_scene_counts sr_scene_count(const struct sr_scene *scene)
+{
+    return scene->counts;
+}
