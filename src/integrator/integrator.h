@@ -1,26 +1,45 @@
 /* SPDX-License-Identifier: MIT */
-/* The estimators of the rendering equation: one file each. */
+/* The estimators of the rendering equation: one file each.
+ *
+ *     L(x, wo) = Le(x, wo) + integral f(wo, wi) L(x, wi) |cos theta_i| dwi        [W m^-2 sr^-1 nm^-1] */
 #ifndef SR_INTEGRATOR_INTEGRATOR_H
 #define SR_INTEGRATOR_INTEGRATOR_H
 
-#include "film/film.h"
 #include "scene/scene.h"
+
+/* Rays in the order in which a render asked for them, to be replayed through the bare ray caster. */
+struct sr_ray_log {
+    struct sr_logged_ray {
+        sr_vec3 o, d;
+        float t_max;
+        bool is_shadow;
+    } *rays;
+    uint64_t count, capacity;
+};
 
 /* What one thread owns while it renders. */
 struct sr_worker {
-    uint64_t rays, shadow_rays, paths, vertices; // counted, never shared
-    struct sr_ray_log *log;                      // NULL, or where every ray is recorded for replay
+    uint64_t rays, shadow_rays, vertices; // counted, never shared
+    struct sr_ray_log *log;               // NULL, or where rays are recorded until it is full
 };
 
-/* The way a sample's numbers are used: group = SR_USE_CAMERA, then SR_USE_BOUNCE + 2 * bounce (light) and + 1 (bsdf). */
-enum { SR_USE_CAMERA = 0, SR_USE_LENS = 1, SR_USE_BOUNCE = 2 };
+/* A sample's numbers come in groups of four: the sensor's two, then two for each bounce. */
+enum { SR_USE_FILM = 0, SR_USE_LENS = 1, SR_USE_BOUNCE = 2 };
+
+/* What a ray brings, and how wide it is: a sensor ray knows how it changes from pixel to pixel. */
+struct sr_path_start {
+    struct sr_ray ray;
+    sr_vec3 dodx, dody; // [m]
+    sr_vec3 dddx, dddy; // [1]
+};
 
 struct sr_integrator_model {
     const char *name;
     const struct sr_param *params;
     size_t size;
-    /* Radiance arriving along the ray, per wavelength. first: NULL, or filled with the first surface. */
-    sr_spectrum (*L)(const void *self, const struct sr_scene *scene, const struct sr_ray *ray, const struct sr_sampler *sampler,
+    /* Radiance arriving along the ray, per wavelength. first: NULL, or the first surface; its material is NULL if there
+     * is none, and t is infinite. */
+    sr_spectrum (*L)(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
                      struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker);
 };
 extern const struct sr_integrator_model *const sr_integrator_models[]; // ends with NULL
@@ -30,5 +49,28 @@ struct sr_integrator {
     const struct sr_integrator_model *model;
     const void *self;
 };
+
+/* ---- what the estimators share ---- */
+
+/* raycast and visible, counted and recorded. */
+bool sr_trace(const struct sr_scene *scene, const struct sr_ray *ray, struct sr_hit *hit, struct sr_worker *worker);
+bool sr_unoccluded(const struct sr_scene *scene, const struct sr_point *x, const struct sr_light_sample *s, struct sr_worker *worker);
+
+/* The footprint of a sensor ray where it meets a surface: the neighbouring rays, on the tangent plane. */
+void sr_first_footprint(const struct sr_path_start *start, struct sr_point *x);
+
+/* Radiance of all infinite lights along an escaping ray. */
+sr_spectrum sr_escape_Le(const struct sr_scene *scene, sr_vec3 w, const struct sr_wavelengths *wavelengths);
+/* Radiance that leaves the hit toward w by its own glow; black where it is dark. */
+sr_spectrum sr_hit_Le(const struct sr_scene *scene, const struct sr_hit *hit, sr_vec3 w, const struct sr_wavelengths *wavelengths);
+
+/* Power heuristic of two densities (Veach 1997, beta = 2), safe against overflow. */
+static inline float sr_mis_weight(float pdf, float other)
+{
+    if (isinf(pdf))
+        return 1;
+    float a = pdf * pdf, b = other * other;
+    return isinf(a) ? 1 : a + b > 0 ? a / (a + b) : 0;
+}
 
 #endif

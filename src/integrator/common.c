@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: MIT */
+/* What the estimators share: counted rays, footprints, emission. */
+#include "integrator/integrator.h"
+
+#include <string.h>
+
+static void record(struct sr_ray_log *log, sr_vec3 o, sr_vec3 d, float t_max, bool is_shadow)
+{
+    if (log->count < log->capacity)
+        log->rays[log->count++] = (struct sr_logged_ray){o, d, t_max, is_shadow};
+}
+
+bool sr_trace(const struct sr_scene *scene, const struct sr_ray *ray, struct sr_hit *hit, struct sr_worker *worker)
+{
+    worker->rays += 1;
+    if (SR_UNLIKELY(worker->log))
+        record(worker->log, ray->o, ray->d, ray->t_max, false);
+    return sr_raycast(scene, ray, hit);
+}
+
+bool sr_unoccluded(const struct sr_scene *scene, const struct sr_point *x, const struct sr_light_sample *s, struct sr_worker *worker)
+{
+    worker->shadow_rays += 1;
+    if (SR_UNLIKELY(worker->log))
+        record(worker->log, sr_point_offset(x, s->wi), s->wi, s->distance, true);
+    return sr_visible(scene, x, s);
+}
+
+void sr_first_footprint(const struct sr_path_start *start, struct sr_point *x)
+{
+    // the tangent plane n . (q - p) = 0, met by the neighbouring rays
+    sr_vec3 offsets[2] = {{0}, {0}};
+    const sr_vec3 *dod[2] = {&start->dodx, &start->dody}, *ddd[2] = {&start->dddx, &start->dddy};
+    for (int i = 0; i < 2; ++i) {
+        sr_vec3 o = sr_add(start->ray.o, *dod[i]), d = sr_add(start->ray.d, *ddd[i]);
+        float cosine = sr_dot(x->n, d);
+        float t = cosine != 0 ? sr_dot(x->n, sr_sub(x->p, o)) / cosine : 0;
+        if (isfinite(t))
+            offsets[i] = sr_sub(sr_mad(o, t, d), x->p);
+    }
+    sr_point_set_footprint(x, offsets[0], offsets[1]);
+}
+
+sr_spectrum sr_escape_Le(const struct sr_scene *scene, sr_vec3 w, const struct sr_wavelengths *wavelengths)
+{
+    const struct sr_lights *lights = sr_scene_lights(scene);
+    sr_spectrum Le = SR_BLACK;
+    for (uint32_t i = 0; i < lights->infinite_count; ++i) {
+        struct sr_light light = lights->lights[lights->infinite[i]];
+        if (!light.model->is_delta)
+            Le += light.model->Le(light.self, NULL, sr_neg(w), wavelengths);
+    }
+    return Le;
+}
+
+sr_spectrum sr_hit_Le(const struct sr_scene *scene, const struct sr_hit *hit, sr_vec3 w, const struct sr_wavelengths *wavelengths)
+{
+    if (hit->light == SR_NO_LIGHT)
+        return SR_BLACK;
+    struct sr_light light = sr_scene_lights(scene)->lights[hit->light];
+    return light.model->Le(light.self, &hit->point, w, wavelengths);
+}
+
+extern const struct sr_integrator_model sr_integrator_path, sr_integrator_simple_path, sr_integrator_random_walk, sr_integrator_ambient_occlusion;
+const struct sr_integrator_model *const sr_integrator_models[] = {
+    &sr_integrator_path,
+    &sr_integrator_simple_path,
+    &sr_integrator_random_walk,
+    &sr_integrator_ambient_occlusion,
+    NULL,
+};
+
+const struct sr_integrator_model *sr_integrator_model_find(const char *name)
+{
+    for (int i = 0; sr_integrator_models[i]; ++i)
+        if (strcmp(sr_integrator_models[i]->name, name) == 0)
+            return sr_integrator_models[i];
+    return NULL;
+}

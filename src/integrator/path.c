@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: MIT */
+/* Path tracing: the rendering equation, one bounce per turn of the loop.
+ *
+ *     L(x, wo) = Le(x, wo) + integral f(wo, wi) L(x, wi) |cos theta_i| dwi        [W m^-2 sr^-1 nm^-1]
+ *
+ * The integral is estimated twice, by a direction toward a light and by one that the surface prefers, and the two are
+ * weighed by their densities (Veach 1997, power heuristic). */
+#include "integrator/integrator.h"
+
+struct path {
+    int32_t max_depth;     // most surfaces at which a path is scattered
+    int32_t light_sampler; // enum sr_light_choice; the scene was finished with it
+    bool regularize;
+};
+
+static const struct sr_param params[] = {
+    {SR_PARAM_INT, "maxdepth", "1", 0, 1e6, 5, offsetof(struct path, max_depth), "most scatterings of a path"},
+    {SR_PARAM_ENUM, "lightsampler", "1", 0, 3, 0, offsetof(struct path, light_sampler), "bvh|power|uniform|exhaustive"},
+    {SR_PARAM_BOOL, "regularize", "1", 0, 1, 0, offsetof(struct path, regularize), "accepted; never done, for it is biased"},
+    {.name = NULL},
+};
+
+// the weight of light met by the surface's choice, had a light been chosen instead
+static float weight_of_hit(const struct sr_scene *scene, const struct sr_point *from, float pdf, sr_vec3 wi, uint32_t light, const struct sr_point *there)
+{
+    if (isinf(pdf))
+        return 1;
+    const struct sr_lights *lights = sr_scene_lights(scene);
+    struct sr_light l = lights->lights[light];
+    float density = l.model->pdf(l.self, from, wi, there);
+    return density > 0 ? sr_mis_weight(pdf, sr_lights_pmf(lights, from, light) * density) : 1;
+}
+
+// light from outside the scene along an escaping ray
+static sr_spectrum escaping(const struct sr_scene *scene, const struct sr_point *from, float pdf, sr_vec3 d, const struct sr_wavelengths *w)
+{
+    const struct sr_lights *lights = sr_scene_lights(scene);
+    sr_spectrum L = SR_BLACK;
+    for (uint32_t i = 0; i < lights->infinite_count; ++i) {
+        uint32_t index = lights->infinite[i];
+        struct sr_light light = lights->lights[index];
+        if (!light.model->is_delta)
+            L += light.model->Le(light.self, NULL, sr_neg(d), w) * weight_of_hit(scene, from, pdf, d, index, NULL);
+    }
+    return L;
+}
+
+// light that reaches x straight from a light and leaves toward wo
+static sr_spectrum direct(const struct sr_scene *scene, const struct sr_point *x, const struct sr_frame *frame, const struct sr_bsdf *bsdf,
+                          sr_vec3 wo, sr_u4 u, const struct sr_wavelengths *w, struct sr_worker *worker)
+{
+    const struct sr_lights *lights = sr_scene_lights(scene);
+    uint32_t index;
+    float pmf;
+    struct sr_light_sample l;
+    if (!sr_lights_pick(lights, x, u[2], &index, &pmf) || !sr_light_draw(lights->lights[index], x, (sr_vec2){u[0], u[1]}, w, &l))
+        return SR_BLACK;
+
+    sr_vec3 wi = sr_to_local(frame, l.wi);
+    float cos_theta_i = sr_abs_cos_theta(wi), pdf_bsdf;
+    sr_spectrum f = sr_bsdf_f_pdf(bsdf, wo, wi, SR_RADIANCE, &pdf_bsdf);
+    sr_spectrum fL = f * l.L * cos_theta_i;
+    if (!(sr_spectrum_max(fL) > 0) || !sr_unoccluded(scene, x, &l, worker))
+        return SR_BLACK;
+
+    float pdf = pmf * l.pdf;
+    return fL * ((l.is_delta ? 1 : sr_mis_weight(pdf, pdf_bsdf)) / pdf);
+}
+
+static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
+                          struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
+{
+    const struct path *path = self;
+    struct sr_ray ray = start->ray;
+    sr_spectrum L = SR_BLACK;   // radiance gathered so far                     [W m^-2 sr^-1 nm^-1]
+    sr_spectrum beta = SR_ONE;  // product of f |cos theta_i| / pdf             [1]
+    float pdf = INFINITY;       // density that chose ray.d                     [1/sr]; infinite: no light sampling could compete
+    float eta_scale = 1;        // what refraction has made of beta, and will undo [1]
+    float width = 0;            // of the path at its last surface              [m]
+    float spread = 0.5f * (sr_length(start->dddx) + sr_length(start->dddy)); // [1]
+    struct sr_point from = {0}; // where the path was scattered last
+    int passed = 0;
+
+    for (int bounce = 0;;) {
+        struct sr_hit x;
+        if (!sr_trace(scene, &ray, &x, worker)) {
+            if (first && bounce == 0)
+                *first = (struct sr_hit){.t = INFINITY};
+            return L + beta * escaping(scene, &from, pdf, ray.d, w);
+        }
+        if (first && bounce == 0)
+            *first = x;
+
+        // Le(x, wo)
+        if (x.light != SR_NO_LIGHT) {
+            sr_spectrum Le = sr_hit_Le(scene, &x, sr_neg(ray.d), w);
+            if (sr_spectrum_max(Le) > 0)
+                L += beta * Le * weight_of_hit(scene, &from, pdf, ray.d, x.light, &x.point);
+        }
+        if (!x.material) { // an interface: the path goes on as it was
+            if (++passed > 1000)
+                return L;
+            ray = sr_leave(&x.point, ray.d);
+            continue;
+        }
+        if (bounce == path->max_depth)
+            return L;
+
+        // what scatters here
+        if (bounce == 0) {
+            sr_first_footprint(start, &x.point);
+            if (first)
+                first->point = x.point;
+        } else {
+            width += spread * x.t;
+            struct sr_frame tangent = sr_frame_from_z(x.point.n);
+            sr_point_set_footprint(&x.point, sr_scale(width, tangent.x), sr_scale(width, tangent.y));
+        }
+        worker->vertices += 1;
+        uint32_t group = SR_USE_BOUNCE + 2 * (uint32_t)bounce;
+        sr_u4 u_light = sr_sample4(sampler, group), u_bsdf = sr_sample4(sampler, group + 1);
+        struct sr_bsdf bsdf;
+        struct sr_frame frame;
+        uint32_t seed = sr_hash_combine(sampler->key + sampler->sample, group);
+        sr_material_shade(x.material, &x.point, sr_neg(ray.d), u_bsdf[3], seed, w, &bsdf, &frame);
+        if (!bsdf.model) {
+            if (++passed > 1000)
+                return L;
+            ray = sr_leave(&x.point, ray.d);
+            continue;
+        }
+        sr_vec3 wo = sr_to_local(&frame, sr_neg(ray.d));
+        if (wo.z == 0)
+            return L;
+
+        // integral f L |cos theta_i| dwi, by the lights
+        if (sr_bsdf_lobes(&bsdf) & (SR_LOBE_DIFFUSE | SR_LOBE_GLOSSY))
+            L += beta * direct(scene, &x.point, &frame, &bsdf, wo, u_light, w, worker);
+
+        // integral f L |cos theta_i| dwi, by the surface: L(x, wi) is the next turn of this loop
+        struct sr_bsdf_sample s;
+        if (!sr_bsdf_sample(&bsdf, wo, u_bsdf[2], (sr_vec2){u_bsdf[0], u_bsdf[1]}, SR_RADIANCE, &s))
+            return L;
+        beta *= s.f * (sr_abs_cos_theta(s.wi) / s.pdf);
+        pdf = s.lobe & SR_LOBE_SPECULAR ? INFINITY : s.pdf_is_proportional ? sr_bsdf_pdf(&bsdf, wo, s.wi, SR_RADIANCE) : s.pdf;
+        if (s.lobe & SR_LOBE_TRANSMISSION)
+            eta_scale *= s.eta * s.eta;
+        if (bounce == 0)
+            width = 0.5f * (sr_length(x.point.dpdx) + sr_length(x.point.dpdy));
+        from = x.point;
+        ray = sr_leave(&from, sr_to_world(&frame, s.wi));
+        ++bounce;
+
+        // a path that carries little ends by lot, and those that survive carry its share
+        float carried = sr_spectrum_max(beta) * eta_scale;
+        if (!(carried > 0))
+            return L;
+        if (carried < 1 && bounce > 1) {
+            float survive = fmaxf(carried, 0.05f);
+            if (u_light[3] >= survive)
+                return L;
+            beta *= 1 / survive;
+        }
+    }
+}
+
+const struct sr_integrator_model sr_integrator_path = {.name = "path", .params = params, .size = sizeof(struct path), .L = path_L};
