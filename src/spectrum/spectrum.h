@@ -19,6 +19,11 @@ typedef int32_t sr_spectrum_int __attribute__((vector_size(SR_LAMBDA_COUNT * siz
 #define SR_BLACK ((sr_spectrum){0})
 #define SR_ONE (SR_BLACK + 1.0f)
 
+/* For each component a where the mask (of a comparison) is true, b elsewhere: C has no ?: for vectors. */
+static inline sr_spectrum sr_spectrum_select(sr_spectrum_int mask, sr_spectrum a, sr_spectrum b)
+{
+    return (sr_spectrum)((mask & (sr_spectrum_int)a) | (~mask & (sr_spectrum_int)b));
+}
 static inline float sr_spectrum_max(sr_spectrum s)
 {
     float m = s[0];

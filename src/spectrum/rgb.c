@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT */
+/* Spectra for RGB values, out of tables that were fitted while the library was built (fit/fit_rgb.c).
+ *
+ *     s(lambda) = 1/2 + x / (2 sqrt(1 + x^2)),   x = c0 lambda^2 + c1 lambda + c2
+ *
+ * The coefficients are trilinear between the table's knots: the largest component z, and the other two divided by z.
+ * Greys are exact: s = v everywhere needs c2 = (v - 1/2) / sqrt(v (1 - v)).
+ * W. Jakob and J. Hanika, A Low-Dimensional Function Space for Efficient Spectral Upsampling, 2019. */
+#include "spectrum/data.h"
+
+#define SURE 0x1p30f // x at which the sigmoid is exactly 1 in float, or at -x exactly 0
+
+static const struct sr_rgb_table *const tables[SR_COLOUR_SPACE_COUNT] = {
+    [SR_SRGB] = &sr_rgb_table_srgb,
+    [SR_DCI_P3] = &sr_rgb_table_dci_p3,
+    [SR_REC2020] = &sr_rgb_table_rec2020,
+    [SR_ACES2065_1] = &sr_rgb_table_aces2065_1,
+};
+
+static struct sr_sigmoid grey(float v)
+{
+    float c2 = v <= 0 ? -SURE : v >= 1 ? SURE : sr_clamp((v - 0.5f) / sqrtf(v * (1 - v)), -SURE, SURE);
+    return (struct sr_sigmoid){0, 0, c2};
+}
+
+// the last knot k <= SR_RGB_RESOLUTION - 2 with knots[k] <= z
+static int find_knot(const float *knots, float z)
+{
+    int k = 0;
+    for (int step = SR_RGB_RESOLUTION / 2; step > 0; step /= 2)
+        k += knots[k + step] <= z ? step : 0;
+    return k < SR_RGB_RESOLUTION - 2 ? k : SR_RGB_RESOLUTION - 2;
+}
+
+struct sr_sigmoid sr_rgb_to_sigmoid(enum sr_colour_space_id space, struct sr_rgb rgb)
+{
+    float v[3] = {sr_clamp(rgb.r, 0, 1), sr_clamp(rgb.g, 0, 1), sr_clamp(rgb.b, 0, 1)};
+    if (v[0] == v[1] && v[1] == v[2])
+        return grey(v[0]);
+
+    int largest = v[0] > v[1] ? (v[0] > v[2] ? 0 : 2) : (v[1] > v[2] ? 1 : 2);
+    const struct sr_rgb_table *table = tables[space];
+    const int n = SR_RGB_RESOLUTION;
+    float z = v[largest];
+    float x = v[(largest + 1) % 3] / z * (float)(n - 1), y = v[(largest + 2) % 3] / z * (float)(n - 1);
+    int i = x < n - 2 ? (int)x : n - 2, j = y < n - 2 ? (int)y : n - 2, k = find_knot(table->knots, z);
+    float tx = x - (float)i, ty = y - (float)j, tz = (z - table->knots[k]) / (table->knots[k + 1] - table->knots[k]);
+
+    const float *corner = table->coefficients[largest][k][j][i];
+    float c[3];
+    for (int e = 0; e < 3; ++e) {
+        const float *p = corner + e, *q = p + 3 * n, *r = p + 3 * n * n, *s = r + 3 * n;
+        float near = sr_lerp(ty, sr_lerp(tx, p[0], p[3]), sr_lerp(tx, q[0], q[3]));
+        float far = sr_lerp(ty, sr_lerp(tx, r[0], r[3]), sr_lerp(tx, s[0], s[3]));
+        c[e] = sr_lerp(tz, near, far);
+    }
+    return (struct sr_sigmoid){c[0], c[1], c[2]};
+}
+
+struct sr_spd sr_spd_from_rgb_albedo(enum sr_colour_space_id space, struct sr_rgb rgb)
+{
+    return (struct sr_spd){.kind = SR_SPD_SIGMOID, .scale = 1, .sigmoid = sr_rgb_to_sigmoid(space, rgb)};
+}
+
+// half way up the sigmoid there is room for any hue; a black keeps scale 0
+static struct sr_spd scaled(enum sr_colour_space_id space, struct sr_rgb rgb)
+{
+    float scale = 2 * fmaxf(rgb.r, fmaxf(rgb.g, rgb.b));
+    if (!(scale > 0))
+        return sr_spd_constant(0);
+    struct sr_rgb share = {rgb.r / scale, rgb.g / scale, rgb.b / scale};
+    return (struct sr_spd){.kind = SR_SPD_SIGMOID, .scale = scale, .sigmoid = sr_rgb_to_sigmoid(space, share)};
+}
+
+struct sr_spd sr_spd_from_rgb_unbounded(enum sr_colour_space_id space, struct sr_rgb rgb)
+{
+    return scaled(space, rgb);
+}
+
+struct sr_spd sr_spd_from_rgb_illuminant(enum sr_colour_space_id space, struct sr_rgb rgb)
+{
+    struct sr_spd s = scaled(space, rgb);
+    if (s.kind == SR_SPD_SIGMOID) {
+        s.kind = SR_SPD_ILLUMINANT;
+        s.table = sr_data_colour_spaces[space].illuminant;
+    }
+    return s;
+}
