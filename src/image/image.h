@@ -46,7 +46,7 @@ struct sr_image {
 
 /* names: channel_count of them, or NULL for Y, YA, RGB, RGBA (by their count), C0, C1, … beyond. Pixels are zero. Fails with
  * SR_ERROR_INPUT where a side or the channel count is 0, a side is above 2^30 or channels above 65536, and with
- * SR_ERROR_RESOURCE where it needs more than 64 GiB or than there is. *image is NULL after a failure. */
+ * SR_ERROR_RESOURCE where it needs more than the memory of the machine. *image is NULL after a failure. */
 sr_status sr_image_create(uint32_t width, uint32_t height, uint32_t channel_count, const char *const *names, enum sr_image_type type,
                           struct sr_image **image, struct sr_error *error);
 void sr_image_free(struct sr_image *image); // NULL is fine
@@ -80,7 +80,7 @@ sr_status sr_image_to_float(struct sr_image *image, struct sr_error *error);
  *   PNG   8 bits or fewer become bytes; 16 bits become linear floats. Grey, RGB, palette, alpha. gAMA and iCCP are not used.
  *   JPEG  grey and RGB bytes (CMYK is refused).      TGA  8, 15, 16, 24, 32 bits, palettes, run lengths, any origin.
  *   PFM   floats, both byte orders.                   HDR  RGBE and XYZE (converted), all run lengths, -Y +X order.
- * An image is refused where it would need more than 64 MiB + 2000 times the size of its file: no honest compression gets
+ * An image is refused where it would need more than 256 MiB + 2000 times the size of its file: no honest compression gets
  * there, and a hostile header costs no memory. */
 sr_status sr_image_read(const char *path, struct sr_image **image, struct sr_error *error);
 /* The same, where the caller knows what whole numbers in the file mean (normal maps and roughness are linear). */

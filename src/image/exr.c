@@ -1,0 +1,402 @@
+/* SPDX-License-Identifier: MIT */
+/* OpenEXR through the OpenEXRCore C interface: read from memory and written to memory.
+ *
+ * "OpenEXR File Layout" of the OpenEXR project. The data window becomes a plain image, with (x0, y0) its place in the display
+ * window. Half and uint samples become floats (uint above 2^24 loses its last digits). Written: float32 scan lines, ZIP, one
+ * part, so that every bit of a float is kept. Limits: only the first part and level 0 are read; deep data and subsampled
+ * channels are refused; names of channels beyond 63 bytes are cut. */
+#include "image/codec.h"
+
+#include <openexr.h>
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+
+static bool is_mine(const uint8_t *data, size_t size)
+{
+    return size >= 4 && memcmp(data, "\x76\x2f\x31\x01", 4) == 0;
+}
+
+struct job {
+    const struct sr_image_source *source;
+    struct sr_array *out;
+    char message[256]; // the library's first complaint
+};
+
+static void on_error(exr_const_context_t context, exr_result_t code, const char *text)
+{
+    void *user = NULL;
+    (void)code;
+    if (!context || exr_get_user_data(context, &user) != EXR_ERR_SUCCESS || !user)
+        return;
+    struct job *job = user;
+    if (!job->message[0])
+        snprintf(job->message, sizeof job->message, "%s", text);
+}
+
+static int64_t take(exr_const_context_t context, void *user, void *buffer, uint64_t size, uint64_t offset, exr_stream_error_func_ptr_t fail)
+{
+    struct job *job = user;
+    if (offset > job->source->size || size > job->source->size - offset) {
+        fail(context, EXR_ERR_READ_IO, "cut short: %llu bytes were expected at %llu", (unsigned long long)size, (unsigned long long)offset);
+        return -1;
+    }
+    memcpy(buffer, job->source->data + offset, size);
+    return (int64_t)size;
+}
+
+static int64_t source_size(exr_const_context_t context, void *user)
+{
+    (void)context;
+    return (int64_t)((struct job *)user)->source->size;
+}
+
+static int64_t put(exr_const_context_t context, void *user, const void *buffer, uint64_t size, uint64_t offset, exr_stream_error_func_ptr_t fail)
+{
+    struct sr_array *out = ((struct job *)user)->out;
+    if (offset > SIZE_MAX / 8 || size > SIZE_MAX / 8 || !sr_array_reserve(out, offset + size, 1)) {
+        fail(context, EXR_ERR_OUT_OF_MEMORY, "not enough memory");
+        return -1;
+    }
+    memcpy((uint8_t *)out->data + offset, buffer, size);
+    if (out->count < offset + size)
+        out->count = offset + size;
+    return (int64_t)size;
+}
+
+static exr_context_initializer_t initializer(struct job *job)
+{
+    exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    init.error_handler_fn = on_error;
+    init.alloc_fn = sr_alloc;
+    init.free_fn = sr_free;
+    init.user_data = job;
+    init.flags = EXR_CONTEXT_FLAG_SILENT_HEADER_PARSE;
+    return init;
+}
+
+/* ---- reading ---- */
+
+/* R, G, B, A go first, in this order; all others keep theirs. */
+static void order_channels(const exr_attr_chlist_t *list, uint32_t *place, const char **names)
+{
+    static const char *const first[4] = {"R", "G", "B", "A"};
+    uint32_t n = 0, count = (uint32_t)list->num_channels;
+    for (uint32_t c = 0; c < count; c++)
+        place[c] = UINT32_MAX;
+    for (int f = 0; f < 4; f++)
+        for (uint32_t c = 0; c < count; c++)
+            if (place[c] == UINT32_MAX && strcmp(list->entries[c].name.str, first[f]) == 0)
+                place[c] = n++;
+    for (uint32_t c = 0; c < count; c++) {
+        if (place[c] == UINT32_MAX)
+            place[c] = n++;
+        names[place[c]] = list->entries[c].name.str;
+    }
+}
+
+/* Text as it is, numbers in decimal; names "unit.X" become the unit of channel X. */
+static sr_status keep_attribute(struct sr_image *image, const exr_attribute_t *a, struct sr_error *error)
+{
+    char number[40];
+    const char *text = number;
+    if (a->type == EXR_ATTR_STRING)
+        text = a->string->str ? a->string->str : "";
+    else if (a->type == EXR_ATTR_FLOAT)
+        snprintf(number, sizeof number, "%.9g", (double)a->f);
+    else if (a->type == EXR_ATTR_DOUBLE)
+        snprintf(number, sizeof number, "%.17g", a->d);
+    else if (a->type == EXR_ATTR_INT)
+        snprintf(number, sizeof number, "%d", a->i);
+    else if (a->type == EXR_ATTR_ENVMAP)
+        text = a->uc == EXR_ENVMAP_CUBE ? "cube" : "latlong";
+    else
+        return SR_OK;
+    static const char *const structural[] = {"type", "pixelAspectRatio", "screenWindowWidth", "chunkCount", "version", "name"};
+    for (size_t i = 0; i < sizeof structural / sizeof *structural; i++)
+        if (strcmp(a->name, structural[i]) == 0)
+            return SR_OK;
+    int channel = strncmp(a->name, "unit.", 5) == 0 ? sr_image_find_channel(image, a->name + 5) : -1;
+    if (channel < 0)
+        return sr_image_set_attribute(image, a->name, text, error);
+    sr_image_set_unit(image, (uint32_t)channel, text);
+    return SR_OK;
+}
+
+static sr_status read_attributes(exr_context_t exr, struct sr_image *image, struct sr_error *error)
+{
+    int32_t count = 0;
+    sr_status status = SR_OK;
+    exr_get_attribute_count(exr, 0, &count);
+    for (int32_t i = 0; i < count && status == SR_OK; i++) {
+        const exr_attribute_t *attribute;
+        if (exr_get_attribute_by_index(exr, 0, EXR_ATTR_LIST_FILE_ORDER, i, &attribute) == EXR_ERR_SUCCESS)
+            status = keep_attribute(image, attribute, error);
+    }
+    exr_attr_chromaticities_t k;
+    if (exr_attr_get_chromaticities(exr, 0, "chromaticities", &k) == EXR_ERR_SUCCESS) {
+        image->has_chromaticities = true;
+        memcpy(image->chromaticities,
+               (double[4][2]){{k.red_x, k.red_y}, {k.green_x, k.green_y}, {k.blue_x, k.blue_y}, {k.white_x, k.white_y}},
+               sizeof image->chromaticities);
+    }
+    return status;
+}
+
+struct chunks {
+    exr_context_t exr;
+    struct sr_image *image;
+    const uint32_t *place;
+    exr_decode_pipeline_t pipeline;
+    bool is_started;
+};
+
+/* One chunk, whose first pixel is (x, y) of the image, straight into the interleaved floats. */
+static exr_result_t read_chunk(struct chunks *k, const exr_chunk_info_t *info, uint32_t x, uint32_t y)
+{
+    struct sr_image *image = k->image;
+    if (x >= image->width || y >= image->height || info->width <= 0 || info->height <= 0 || (uint32_t)info->width > image->width - x ||
+        (uint32_t)info->height > image->height - y)
+        return EXR_ERR_CORRUPT_CHUNK;
+    exr_result_t result = k->is_started ? exr_decoding_update(k->exr, 0, info, &k->pipeline)
+                                        : exr_decoding_initialize(k->exr, 0, info, &k->pipeline);
+    bool is_first = !k->is_started;
+    k->is_started = true;
+    if (result != EXR_ERR_SUCCESS)
+        return result;
+    if ((uint32_t)k->pipeline.channel_count != image->channel_count)
+        return EXR_ERR_CORRUPT_CHUNK;
+    for (int16_t c = 0; c < k->pipeline.channel_count; c++) {
+        exr_coding_channel_info_t *channel = &k->pipeline.channels[c];
+        channel->decode_to_ptr = (uint8_t *)(image->floats + sr_image_index(image, x, y) + k->place[c]);
+        channel->user_data_type = EXR_PIXEL_FLOAT;
+        channel->user_bytes_per_element = 4;
+        channel->user_pixel_stride = (int32_t)(image->channel_count * 4);
+        channel->user_line_stride = (int32_t)(image->channel_count * 4 * image->width);
+    }
+    if (is_first)
+        result = exr_decoding_choose_default_routines(k->exr, 0, &k->pipeline);
+    return result == EXR_ERR_SUCCESS ? exr_decoding_run(k->exr, 0, &k->pipeline) : result;
+}
+
+static exr_result_t read_lines(struct chunks *k, const exr_attr_box2i_t *window)
+{
+    int32_t lines = 0;
+    exr_result_t result = exr_get_scanlines_per_chunk(k->exr, 0, &lines);
+    if (result == EXR_ERR_SUCCESS && lines <= 0)
+        return EXR_ERR_CORRUPT_CHUNK;
+    for (int64_t y = window->min.y; y <= window->max.y && result == EXR_ERR_SUCCESS; y += lines) {
+        exr_chunk_info_t info;
+        result = exr_read_scanline_chunk_info(k->exr, 0, (int)y, &info);
+        if (result == EXR_ERR_SUCCESS)
+            result = read_chunk(k, &info, 0, (uint32_t)(y - window->min.y));
+    }
+    return result;
+}
+
+static exr_result_t read_tiles(struct chunks *k)
+{
+    int32_t tile_width = 0, tile_height = 0;
+    exr_result_t result = exr_get_tile_sizes(k->exr, 0, 0, 0, &tile_width, &tile_height);
+    if (result == EXR_ERR_SUCCESS && (tile_width <= 0 || tile_height <= 0))
+        return EXR_ERR_CORRUPT_CHUNK;
+    for (uint64_t y = 0; y < k->image->height && result == EXR_ERR_SUCCESS; y += (uint32_t)tile_height)
+        for (uint64_t x = 0; x < k->image->width && result == EXR_ERR_SUCCESS; x += (uint32_t)tile_width) {
+            exr_chunk_info_t info;
+            result = exr_read_tile_chunk_info(k->exr, 0, (int)(x / (uint32_t)tile_width), (int)(y / (uint32_t)tile_height), 0, 0, &info);
+            if (result == EXR_ERR_SUCCESS)
+                result = read_chunk(k, &info, (uint32_t)x, (uint32_t)y);
+        }
+    return result;
+}
+
+static const char *refusal(exr_storage_t storage, const exr_attr_chlist_t *list, uint64_t width)
+{
+    if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED)
+        return "holds deep data, a plain image was expected";
+    if (list->num_channels <= 0 || list->num_channels > INT16_MAX)
+        return "has no channels, or more than 32767";
+    for (int c = 0; c < list->num_channels; c++)
+        if (list->entries[c].x_sampling != 1 || list->entries[c].y_sampling != 1)
+            return "has subsampled channels, which are not read";
+    return width * (uint64_t)list->num_channels * 4 > INT32_MAX ? "has rows of more than 2 GiB" : NULL;
+}
+
+static sr_status read_part(exr_context_t exr, struct job *job, struct sr_image **image, struct sr_error *error)
+{
+    const char *label = job->source->label;
+    exr_storage_t storage;
+    const exr_attr_chlist_t *list = NULL;
+    exr_attr_box2i_t data, display;
+    if (exr_get_storage(exr, 0, &storage) != EXR_ERR_SUCCESS || exr_get_channels(exr, 0, &list) != EXR_ERR_SUCCESS ||
+        exr_get_data_window(exr, 0, &data) != EXR_ERR_SUCCESS || exr_get_display_window(exr, 0, &display) != EXR_ERR_SUCCESS)
+        return sr_fail(error, SR_ERROR_INPUT, "%s: the EXR header is damaged: %s", label, job->message);
+    int64_t width = (int64_t)data.max.x - data.min.x + 1, height = (int64_t)data.max.y - data.min.y + 1;
+    int64_t full_width = (int64_t)display.max.x - display.min.x + 1, full_height = (int64_t)display.max.y - display.min.y + 1;
+    int64_t x0 = (int64_t)data.min.x - display.min.x, y0 = (int64_t)data.min.y - display.min.y;
+    if (width <= 0 || height <= 0 || full_width <= 0 || full_height <= 0 || x0 != (int32_t)x0 || y0 != (int32_t)y0 || full_width > UINT32_MAX ||
+        full_height > UINT32_MAX)
+        return sr_fail(error, SR_ERROR_INPUT, "%s: the EXR header has a data or display window that makes no sense", label);
+    const char *why = refusal(storage, list, (uint64_t)width);
+    if (why)
+        return sr_fail(error, SR_ERROR_INPUT, "%s: %s", label, why);
+    struct sr_arena scratch = {0};
+    uint32_t count = (uint32_t)list->num_channels;
+    uint32_t *place = sr_arena_alloc(&scratch, count * sizeof *place);
+    const char **names = sr_arena_alloc(&scratch, count * sizeof *names);
+    sr_status status = place && names ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory to read it", label);
+    if (status == SR_OK) {
+        order_channels(list, place, names);
+        status = sr_image_create_for(job->source, (uint64_t)width, (uint64_t)height, count, names, SR_IMAGE_FLOATS, image, error);
+    }
+    if (status == SR_OK) {
+        (*image)->encoding = SR_IMAGE_LINEAR;
+        (*image)->x0 = (int32_t)x0;
+        (*image)->y0 = (int32_t)y0;
+        (*image)->full_width = (uint32_t)full_width;
+        (*image)->full_height = (uint32_t)full_height;
+        status = read_attributes(exr, *image, error);
+    }
+    if (status == SR_OK) {
+        struct chunks k = {exr, *image, place, EXR_DECODE_PIPELINE_INITIALIZER, false};
+        exr_result_t result = storage == EXR_STORAGE_TILED ? read_tiles(&k) : read_lines(&k, &data);
+        if (k.is_started)
+            exr_decoding_destroy(exr, &k.pipeline);
+        if (result != EXR_ERR_SUCCESS)
+            status = sr_fail(error, SR_ERROR_INPUT, "%s: the EXR pixels are damaged or cut short: %s", label,
+                             job->message[0] ? job->message : exr_get_default_error_message(result));
+    }
+    sr_arena_free(&scratch);
+    return status;
+}
+
+static sr_status decode(const struct sr_image_source *source, struct sr_image **image, struct sr_error *error)
+{
+    struct job job = {.source = source};
+    exr_context_initializer_t init = initializer(&job);
+    init.read_fn = take;
+    init.size_fn = source_size;
+    exr_context_t exr = NULL;
+    exr_result_t result = exr_start_read(&exr, source->label, &init);
+    sr_status status = result == EXR_ERR_SUCCESS ? read_part(exr, &job, image, error)
+                                                 : sr_fail(error, SR_ERROR_INPUT, "%s: the EXR header is damaged or cut short: %s", source->label,
+                                                           job.message[0] ? job.message : exr_get_default_error_message(result));
+    if (exr)
+        exr_finish(&exr);
+    if (status != SR_OK) {
+        sr_image_free(*image);
+        *image = NULL;
+    }
+    return status;
+}
+
+/* ---- writing ---- */
+
+static exr_result_t write_header(exr_context_t exr, const struct sr_image *image)
+{
+    int part = 0;
+    exr_attr_v2f_t centre = {.x = 0, .y = 0};
+    exr_attr_box2i_t display = {.min = {.x = 0, .y = 0}, .max = {.x = (int32_t)image->full_width - 1, .y = (int32_t)image->full_height - 1}};
+    exr_attr_box2i_t data = {.min = {.x = image->x0, .y = image->y0},
+                             .max = {.x = image->x0 + (int32_t)image->width - 1, .y = image->y0 + (int32_t)image->height - 1}};
+    exr_result_t result = exr_set_longname_support(exr, 1);
+    if (result == EXR_ERR_SUCCESS)
+        result = exr_add_part(exr, "image", EXR_STORAGE_SCANLINE, &part);
+    if (result == EXR_ERR_SUCCESS)
+        result = exr_initialize_required_attr(exr, part, &display, &data, 1, &centre, 1, EXR_LINEORDER_INCREASING_Y, EXR_COMPRESSION_ZIP);
+    for (uint32_t c = 0; c < image->channel_count && result == EXR_ERR_SUCCESS; c++) {
+        char key[80];
+        snprintf(key, sizeof key, "unit.%s", image->channels[c].name);
+        result = exr_add_channel(exr, part, image->channels[c].name, EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+        if (result == EXR_ERR_SUCCESS && image->channels[c].unit[0])
+            result = exr_attr_set_string(exr, part, key, image->channels[c].unit);
+    }
+    if (result == EXR_ERR_SUCCESS && image->has_chromaticities) {
+        const double(*k)[2] = image->chromaticities;
+        exr_attr_chromaticities_t chromaticities = {(float)k[0][0], (float)k[0][1], (float)k[1][0], (float)k[1][1],
+                                                    (float)k[2][0], (float)k[2][1], (float)k[3][0], (float)k[3][1]};
+        result = exr_attr_set_chromaticities(exr, part, "chromaticities", &chromaticities);
+    }
+    for (uint32_t i = 0; i < image->attribute_count && result == EXR_ERR_SUCCESS; i++)
+        if (strcmp(image->attributes[i].name, "name") != 0)
+            result = exr_attr_set_string(exr, part, image->attributes[i].name, image->attributes[i].text);
+    return result == EXR_ERR_SUCCESS ? exr_write_header(exr) : result;
+}
+
+static exr_result_t write_lines(exr_context_t exr, const struct sr_image *image, const float *floats)
+{
+    int32_t lines = 0;
+    exr_encode_pipeline_t pipeline = EXR_ENCODE_PIPELINE_INITIALIZER;
+    bool is_started = false;
+    exr_result_t result = exr_get_scanlines_per_chunk(exr, 0, &lines);
+    for (uint32_t y = 0; y < image->height && result == EXR_ERR_SUCCESS; y += (uint32_t)lines) {
+        exr_chunk_info_t info;
+        result = exr_write_scanline_chunk_info(exr, 0, image->y0 + (int32_t)y, &info);
+        if (result == EXR_ERR_SUCCESS)
+            result = is_started ? exr_encoding_update(exr, 0, &info, &pipeline) : exr_encoding_initialize(exr, 0, &info, &pipeline);
+        for (int16_t c = 0; c < pipeline.channel_count && result == EXR_ERR_SUCCESS; c++) {
+            exr_coding_channel_info_t *channel = &pipeline.channels[c];
+            int place = sr_image_find_channel(image, channel->channel_name);
+            if (place < 0)
+                result = EXR_ERR_INVALID_ARGUMENT;
+            channel->encode_from_ptr = (const uint8_t *)(floats + sr_image_index(image, 0, y) + (place < 0 ? 0 : place));
+            channel->user_data_type = EXR_PIXEL_FLOAT;
+            channel->user_bytes_per_element = 4;
+            channel->user_pixel_stride = (int32_t)(image->channel_count * 4);
+            channel->user_line_stride = (int32_t)(image->channel_count * 4 * image->width);
+        }
+        if (result == EXR_ERR_SUCCESS && !is_started)
+            result = exr_encoding_choose_default_routines(exr, 0, &pipeline);
+        is_started = true;
+        if (result == EXR_ERR_SUCCESS)
+            result = exr_encoding_run(exr, 0, &pipeline);
+    }
+    if (is_started)
+        exr_encoding_destroy(exr, &pipeline);
+    return result;
+}
+
+static float *decoded(const struct sr_image *image)
+{
+    size_t pixels = (size_t)image->width * image->height;
+    float *floats = sr_alloc(pixels * image->channel_count * sizeof(float));
+    for (size_t p = 0; floats && p < pixels; p++)
+        for (uint32_t c = 0; c < image->channel_count; c++)
+            floats[p * image->channel_count + c] = sr_image_value(image, p * image->channel_count + c, c);
+    return floats;
+}
+
+static sr_status encode(const struct sr_image *image, const struct sr_image_write_options *options, struct sr_array *out,
+                        struct sr_error *error)
+{
+    (void)options;
+    if ((uint64_t)image->width * image->channel_count * 4 > INT32_MAX || image->channel_count > INT16_MAX)
+        return sr_fail(error, SR_ERROR_USAGE, "an EXR file takes rows of 2 GiB and 32767 channels at most");
+    for (uint32_t c = 0; c < image->channel_count; c++)
+        if (!image->channels[c].name[0] || sr_image_find_channel(image, image->channels[c].name) != (int)c)
+            return sr_fail(error, SR_ERROR_USAGE, "an EXR file needs channel names that differ, channel %u is '%s'", c, image->channels[c].name);
+    float *floats = image->floats ? image->floats : decoded(image);
+    if (!floats)
+        return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory to write an EXR file");
+    struct job job = {.out = out};
+    exr_context_initializer_t init = initializer(&job);
+    init.write_fn = put;
+    exr_context_t exr = NULL;
+    exr_result_t result = exr_start_write(&exr, "image.exr", EXR_WRITE_FILE_DIRECTLY, &init);
+    if (result == EXR_ERR_SUCCESS)
+        result = write_header(exr, image);
+    if (result == EXR_ERR_SUCCESS)
+        result = write_lines(exr, image, floats);
+    if (exr) {
+        exr_result_t finished = exr_finish(&exr);
+        result = result == EXR_ERR_SUCCESS ? finished : result;
+    }
+    if (floats != image->floats)
+        sr_free(floats);
+    if (result == EXR_ERR_SUCCESS)
+        return SR_OK;
+    return sr_fail(error, result == EXR_ERR_OUT_OF_MEMORY ? SR_ERROR_RESOURCE : SR_ERROR_USAGE, "the EXR library says: %s",
+                   job.message[0] ? job.message : exr_get_default_error_message(result));
+}
+
+const struct sr_image_codec sr_image_codec_exr = {"EXR", {".exr"}, is_mine, decode, encode};
