@@ -29,7 +29,7 @@ bool sr_unoccluded(const struct sr_scene *scene, const struct sr_point *x, const
 void sr_first_footprint(const struct sr_path_start *start, struct sr_point *x)
 {
     // the tangent plane n . (q - p) = 0, met by the neighbouring rays
-    sr_vec3 offsets[2] = {{0}, {0}};
+    sr_vec3 offsets[2] = {{0, 0, 0}, {0, 0, 0}};
     const sr_vec3 *dod[2] = {&start->dodx, &start->dody}, *ddd[2] = {&start->dddx, &start->dddy};
     for (int i = 0; i < 2; ++i) {
         sr_vec3 o = sr_add(start->ray.o, *dod[i]), d = sr_add(start->ray.d, *ddd[i]);

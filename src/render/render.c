@@ -1,0 +1,264 @@
+/* SPDX-License-Identifier: MIT */
+/* Work units and workers: every tile gets its blocks of samples in order, and any thread may make any of them. */
+#define _POSIX_C_SOURCE 200809L
+#include "render/render.h"
+
+#include <pthread.h>
+#include <sched.h>
+
+enum { DEFAULT_TILE = 16, ORDINARY_BLOCKS = 4 };
+
+struct run {
+    const struct sr_render_job *job;
+    struct sr_film *film;
+    float rgb_from_xyz[3][3];
+    uint32_t tile, tiles_x, tiles_y, blocks;
+    atomic_ullong next_unit;
+    atomic_uint *tile_blocks;      // how many blocks of a tile are in the film
+    atomic_ullong rays, shadow_rays, vertices, paths, dropped;
+    atomic_ullong units_done;
+    atomic_bool cancelled;
+    pthread_rwlock_t film_lock;    // stores share it, whoever looks at the whole film has it alone
+    pthread_mutex_t progress_lock; // guards the members below
+    double start_s, last_progress_s;
+    uint32_t first_dropped[4];     // x, y, replicate, sample
+    bool has_dropped;
+    struct sr_film_block *scratch; // tile * tile for each thread
+};
+
+/* ---- one sample ---- */
+
+/* Reflectance of the first surface under the output space's white, for the albedo channel. */
+static void first_albedo(const struct sr_render_job *job, struct sr_hit *hit, sr_vec3 d, const struct sr_sampler *sampler,
+                         const struct sr_wavelengths *wavelengths, float albedo[3])
+{
+    struct sr_wavelengths w = *wavelengths;
+    struct sr_bsdf bsdf;
+    struct sr_frame frame;
+    sr_u4 u = sr_sample4(sampler, SR_USE_BOUNCE + 1);
+    uint32_t seed = sr_hash_combine(sampler->key + sampler->sample, SR_USE_BOUNCE);
+    sr_material_shade(hit->material, &hit->point, sr_neg(d), u[3], seed, &w, &bsdf, &frame);
+    if (!bsdf.model)
+        return;
+    sr_vec3 wo = sr_to_local(&frame, sr_neg(d));
+    sr_spectrum rho = SR_BLACK;
+    struct sr_bsdf_sample s;
+    if (bsdf.model->albedo)
+        rho = bsdf.model->albedo(bsdf.data, wo);
+    else if (sr_bsdf_sample(&bsdf, wo, u[2], (sr_vec2){u[0], u[1]}, SR_RADIANCE, &s))
+        rho = s.f * (sr_abs_cos_theta(s.wi) / s.pdf);
+    const struct sr_colour_space *space = sr_colour_space(job->film.space);
+    struct sr_spd white = {.kind = SR_SPD_TABLE, .scale = (float)(1 / space->illuminant_luminous_integral), .table = space->illuminant};
+    struct sr_rgb rgb = sr_rgb_from_xyz(space, sr_spectrum_to_xyz(rho * sr_spd_eval(&white, w.lambda), &w));
+    albedo[0] = rgb.r, albedo[1] = rgb.g, albedo[2] = rgb.b;
+}
+
+static bool sample_pixel(const struct sr_render_job *job, float m[3][3], uint32_t x, uint32_t y, uint32_t replicate, uint32_t sample,
+                         float rgb[3], struct sr_first_hit *first, struct sr_worker *worker)
+{
+    struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, x, y, replicate, sample);
+    sr_u4 u = sr_sample4(&sampler, SR_USE_FILM), u_lens = sr_sample4(&sampler, SR_USE_LENS);
+    float weight = 1;
+    sr_vec2 offset = job->jitter_pixel ? sr_filter_sample(&job->filter, (sr_vec2){u[0], u[1]}, &weight) : (sr_vec2){0, 0};
+    struct sr_wavelengths w = sr_wavelengths_sample(job->lambda, job->jitter_lambda ? u[2] : 0.5f);
+    struct sr_sensor_ray view;
+    rgb[0] = rgb[1] = rgb[2] = 0;
+    sr_vec2 raster = {(float)x + 0.5f + offset.x, (float)y + 0.5f + offset.y};
+    if (!job->sensor.model->ray(job->sensor.self, raster, (sr_vec2){u_lens[0], u_lens[1]}, u[3], &view))
+        return true;
+
+    struct sr_path_start start = {view.ray, view.dodx, view.dody, view.dddx, view.dddy};
+    struct sr_hit hit;
+    sr_spectrum L = job->integrator.model->L(job->integrator.self, job->scene, &start, &sampler, &w, first ? &hit : NULL, worker);
+    struct sr_xyz xyz = sr_spectrum_to_xyz(L, &w);
+    weight *= view.weight;
+    for (int c = 0; c < 3; ++c)
+        rgb[c] = weight * (m[c][0] * xyz.x + m[c][1] * xyz.y + m[c][2] * xyz.z);
+    float largest = fmaxf(rgb[0], fmaxf(rgb[1], rgb[2]));
+    if (largest > job->film.max_component)
+        for (int c = 0; c < 3; ++c)
+            rgb[c] *= job->film.max_component / largest;
+
+    if (first) {
+        *first = (struct sr_first_hit){.is_hit = hit.material != NULL};
+        if (hit.material) {
+            first->n = hit.point.n;
+            first->ns = hit.point.ns;
+            first->p = hit.point.p;
+            first->depth = hit.t;
+            first->uv = hit.point.uv;
+            first->material = hit.material_number;
+            first->object = hit.object;
+            first_albedo(job, &hit, view.ray.d, &sampler, &w, first->albedo);
+        }
+    }
+    return isfinite(rgb[0]) && isfinite(rgb[1]) && isfinite(rgb[2]);
+}
+
+bool sr_render_sample(const struct sr_render_job *job, uint32_t x, uint32_t y, uint32_t replicate, uint32_t sample, float rgb[3],
+                      struct sr_first_hit *first, struct sr_worker *worker)
+{
+    float m[3][3];
+    sr_film_response(&job->film, m);
+    return sample_pixel(job, m, x, y, replicate, sample, rgb, first, worker);
+}
+
+/* ---- one unit: a tile times a block ---- */
+
+static void remember_dropped(struct run *run, uint32_t x, uint32_t y, uint32_t replicate, uint32_t sample)
+{
+    atomic_fetch_add_explicit(&run->dropped, 1, memory_order_relaxed);
+    pthread_mutex_lock(&run->progress_lock);
+    // the first in picture order, so that the report does not depend on who was faster
+    uint32_t now[4] = {x, y, replicate, sample};
+    uint32_t *old = run->first_dropped;
+    if (!run->has_dropped || y < old[1] || (y == old[1] && (x < old[0] || (x == old[0] && (replicate < old[2] || (replicate == old[2] && sample < old[3])))))) {
+        for (int i = 0; i < 4; ++i)
+            old[i] = now[i];
+        run->has_dropped = true;
+    }
+    pthread_mutex_unlock(&run->progress_lock);
+}
+
+static bool is_cancelled(struct run *run)
+{
+    if (run->job->cancel && atomic_load_explicit(run->job->cancel, memory_order_relaxed))
+        atomic_store_explicit(&run->cancelled, true, memory_order_relaxed);
+    return atomic_load_explicit(&run->cancelled, memory_order_relaxed);
+}
+
+/* The samples of one pixel in one block; false: cancelled, nothing of it counts. */
+static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, struct sr_film_block *b, struct sr_worker *worker)
+{
+    const struct sr_render_job *job = run->job;
+    *b = (struct sr_film_block){0};
+    uint64_t per_replicate = job->replicates ? job->spp / job->replicates : 0;
+    uint32_t replicate = job->replicates ? block : 0;
+    uint32_t begin = job->replicates ? 0 : (uint32_t)((uint64_t)job->spp * block / run->blocks);
+    uint32_t end = job->replicates ? (uint32_t)per_replicate : (uint32_t)((uint64_t)job->spp * (block + 1) / run->blocks);
+    for (uint32_t i = begin; i < end; ++i) {
+        float rgb[3];
+        struct sr_first_hit first;
+        bool is_finite = sample_pixel(job, run->rgb_from_xyz, x, y, replicate, i, rgb, job->with_aov ? &first : NULL, worker);
+        if (SR_UNLIKELY(!is_finite))
+            remember_dropped(run, x, y, replicate, i);
+        sr_film_block_add(b, rgb, is_finite);
+        if (job->with_aov)
+            sr_film_block_add_first(b, &first);
+        if ((i & 255) == 255 && is_cancelled(run))
+            return false;
+    }
+    return true;
+}
+
+static void tell_progress(struct run *run, double share)
+{
+    const struct sr_render_job *job = run->job;
+    if (!job->progress || pthread_mutex_trylock(&run->progress_lock) != 0)
+        return;
+    double now = sr_clock_s();
+    if (now - run->last_progress_s >= job->progress_interval_s) {
+        run->last_progress_s = now;
+        double elapsed = now - run->start_s;
+        pthread_rwlock_wrlock(&run->film_lock);
+        struct sr_render_progress p = {
+            .share = share, .elapsed_s = elapsed, .left_s = share > 0 ? elapsed * (1 - share) / share : NAN,
+            .rays = atomic_load(&run->rays) + atomic_load(&run->shadow_rays), .film = run->film,
+        };
+        job->progress(job->user, &p);
+        pthread_rwlock_unlock(&run->film_lock);
+    }
+    pthread_mutex_unlock(&run->progress_lock);
+}
+
+static bool do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratch, struct sr_worker *worker)
+{
+    uint32_t tiles = run->tiles_x * run->tiles_y, tile = (uint32_t)(unit % tiles), block = (uint32_t)(unit / tiles);
+    uint32_t x0 = tile % run->tiles_x * run->tile, y0 = tile / run->tiles_x * run->tile;
+    uint32_t x1 = x0 + run->tile < run->film->width ? x0 + run->tile : run->film->width;
+    uint32_t y1 = y0 + run->tile < run->film->height ? y0 + run->tile : run->film->height;
+    uint32_t left = (uint32_t)run->film->settings.x0, top = (uint32_t)run->film->settings.y0, done = 0;
+    uint64_t paths = 0;
+    for (uint32_t y = y0; y < y1; ++y)
+        for (uint32_t x = x0; x < x1; ++x, ++done) {
+            if (is_cancelled(run) || !fill_block(run, left + x, top + y, block, &scratch[done], worker))
+                return false;
+            paths += scratch[done].n;
+        }
+    // blocks of a tile go in by their order; the one before is being made by a thread that does not wait for us
+    while (atomic_load_explicit(&run->tile_blocks[tile], memory_order_acquire) != block) {
+        if (is_cancelled(run))
+            return false;
+        sched_yield();
+    }
+    pthread_rwlock_rdlock(&run->film_lock);
+    uint32_t i = 0;
+    for (uint32_t y = y0; y < y1; ++y)
+        for (uint32_t x = x0; x < x1; ++x)
+            sr_film_store(run->film, x, y, &scratch[i++]);
+    pthread_rwlock_unlock(&run->film_lock);
+    atomic_store_explicit(&run->tile_blocks[tile], block + 1, memory_order_release);
+    atomic_fetch_add_explicit(&run->paths, paths, memory_order_relaxed);
+    return true;
+}
+
+static void work(void *context, int thread)
+{
+    struct run *run = context;
+    struct sr_film_block *scratch = run->scratch + (size_t)thread * run->tile * run->tile;
+    uint64_t units = (uint64_t)run->tiles_x * run->tiles_y * run->blocks;
+    struct sr_worker worker = {.log = thread == 0 ? run->job->log : NULL};
+    for (;;) {
+        uint64_t unit = atomic_fetch_add_explicit(&run->next_unit, 1, memory_order_relaxed);
+        if (unit >= units || is_cancelled(run) || !do_unit(run, unit, scratch, &worker))
+            break;
+        uint64_t done = atomic_fetch_add_explicit(&run->units_done, 1, memory_order_relaxed) + 1;
+        atomic_fetch_add_explicit(&run->rays, worker.rays, memory_order_relaxed);
+        atomic_fetch_add_explicit(&run->shadow_rays, worker.shadow_rays, memory_order_relaxed);
+        atomic_fetch_add_explicit(&run->vertices, worker.vertices, memory_order_relaxed);
+        worker.rays = worker.shadow_rays = worker.vertices = 0;
+        tell_progress(run, (double)done / (double)units);
+    }
+}
+
+sr_status sr_render(const struct sr_render_job *job, struct sr_film **film, struct sr_render_report *report, struct sr_error *error)
+{
+    *film = NULL;
+    *report = (struct sr_render_report){0};
+    if (job->spp < 1)
+        return sr_fail(error, SR_ERROR_USAGE, "at least one sample per pixel is needed");
+    if (job->replicates == 1 || (job->replicates && job->spp % job->replicates != 0))
+        return sr_fail(error, SR_ERROR_USAGE, "%u samples per pixel cannot be split into %u replicates of equal size (2 or more)", job->spp, job->replicates);
+    if (sr_film_create(&job->film, job->with_aov, film, error) != SR_OK)
+        return error->status;
+
+    struct run run = {.job = job, .film = *film, .tile = job->tile > 0 ? (uint32_t)job->tile : DEFAULT_TILE};
+    sr_film_response(&job->film, run.rgb_from_xyz);
+    run.tiles_x = ((*film)->width + run.tile - 1) / run.tile;
+    run.tiles_y = ((*film)->height + run.tile - 1) / run.tile;
+    run.blocks = job->replicates ? job->replicates : job->spp < ORDINARY_BLOCKS ? job->spp : ORDINARY_BLOCKS;
+    int threads = job->threads > 0 ? job->threads : sr_thread_count();
+    struct sr_arena arena = {0};
+    run.tile_blocks = sr_arena_alloc(&arena, (size_t)run.tiles_x * run.tiles_y * sizeof *run.tile_blocks);
+    run.scratch = sr_arena_alloc(&arena, (size_t)threads * run.tile * run.tile * sizeof *run.scratch);
+    if (!run.tile_blocks || !run.scratch) {
+        sr_arena_free(&arena);
+        sr_film_destroy(*film);
+        *film = NULL;
+        return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for %d workers", threads);
+    }
+    pthread_rwlock_init(&run.film_lock, NULL);
+    pthread_mutex_init(&run.progress_lock, NULL);
+    run.start_s = run.last_progress_s = sr_clock_s();
+    sr_parallel(threads, work, &run);
+    pthread_rwlock_destroy(&run.film_lock);
+    pthread_mutex_destroy(&run.progress_lock);
+
+    *report = (struct sr_render_report){
+        .render_s = sr_clock_s() - run.start_s, .paths = run.paths, .rays = run.rays, .shadow_rays = run.shadow_rays, .vertices = run.vertices,
+        .dropped = run.dropped, .dropped_x = run.first_dropped[0], .dropped_y = run.first_dropped[1],
+        .dropped_replicate = run.first_dropped[2], .dropped_sample = run.first_dropped[3], .is_complete = !run.cancelled,
+    };
+    sr_arena_free(&arena);
+    return run.cancelled ? SR_CANCELLED : SR_OK;
+}

@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: MIT */
+/* Jobs: a finished scene, a sensor and a film; work units, workers, progress; and the film as an image with units.
+ *
+ * A work unit is a tile times a block of samples. Each pixel's sums are added in the order of the blocks, whoever computes
+ * them, so that the bytes do not depend on threads or tiles. */
+#ifndef SR_RENDER_RENDER_H
+#define SR_RENDER_RENDER_H
+
+#include "film/film.h"
+#include "image/image.h"
+#include "integrator/integrator.h"
+#include "sensor/sensor.h"
+
+#include <stdatomic.h>
+
+/* What a progress callback is told. */
+struct sr_render_progress {
+    double share;      // [1] of the work that is done
+    double elapsed_s;  // [s]
+    double left_s;     // [s] estimated; NaN: not known yet
+    uint64_t rays;     // so far, shadow rays included
+    const struct sr_film *film; // as it is now; pixels of running units may be a block behind
+};
+
+struct sr_render_job {
+    const struct sr_scene *scene;
+    struct sr_sensor sensor;
+    struct sr_filter filter;
+    struct sr_integrator integrator;
+    struct sr_film_settings film;
+    enum sr_sampler_kind sampler;
+    uint32_t seed;
+    uint32_t spp;        // samples per pixel, in all
+    uint32_t replicates; // 0: an ordinary image; R >= 2: R independently scrambled nets, for Student's intervals
+    struct sr_lambda_range lambda; // [nm]
+    bool jitter_pixel, jitter_lambda; // false only to look into things
+    bool with_aov;
+    int threads;         // 0: all processors
+    int tile;            // [pixel] side of a tile; 0: 16
+    struct sr_ray_log *log; // NULL, or where the first thread's rays are recorded
+
+    void (*progress)(void *user, const struct sr_render_progress *p); // NULL: nobody asks; called by one thread at a time
+    double progress_interval_s;
+    void *user;
+    const atomic_bool *cancel; // NULL, or set by somebody who wants to stop; what is done is kept
+};
+
+struct sr_render_report {
+    double render_s;
+    uint64_t paths, rays, shadow_rays, vertices;
+    uint64_t dropped;                        // samples that were not finite
+    uint32_t dropped_x, dropped_y, dropped_sample, dropped_replicate; // the first of them, for replay
+    bool is_complete;
+};
+
+/* Renders into a new film. Cancelled: SR_CANCELLED, and the film holds what there is. */
+sr_status sr_render(const struct sr_render_job *job, struct sr_film **film, struct sr_render_report *report, struct sr_error *error);
+
+/* One sample of one pixel, alone: RGB as it would be added to the film. Returns whether it is finite. */
+bool sr_render_sample(const struct sr_render_job *job, uint32_t x, uint32_t y, uint32_t replicate, uint32_t sample, float rgb[3],
+                      struct sr_first_hit *first, struct sr_worker *worker);
+
+/* The film as an image: R G B, and with error bars SE.R SE.G SE.B, samples, and the auxiliary channels if it has them.
+ * Luminance-like channels are in cd/m^2. */
+sr_status sr_render_image(const struct sr_film *film, bool with_error, bool is_replicated, struct sr_image **image, struct sr_error *error);
+
+#endif
