@@ -30,7 +30,7 @@ struct sr_bsdf_sample {
     bool pdf_is_proportional; // f and pdf share an unknown factor (random walks): use pdf() for weighing
 };
 
-#define SR_BSDF_SIZE 256 // [B] of the largest model's data
+#define SR_BSDF_SIZE (128 + 16 * SR_LAMBDA_COUNT) // [B] of the largest model's data: 256 for 8 wavelengths
 
 struct sr_bsdf_model {
     const char *name;
@@ -43,9 +43,11 @@ struct sr_bsdf_model {
     bool (*sample)(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode, struct sr_bsdf_sample *s);
     /* f and pdf at once, where sharing work pays; NULL: the two are called. Must equal them bit for bit. */
     sr_spectrum (*f_pdf)(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *pdf);
-    /* directional albedo E(wo) per wavelength where a closed form is known; NULL: nobody knows one. */
+    /* directional albedo E(wo) per wavelength, in the form for importance, where a closed form is known; NULL, or NaN for
+     * these parameters: nobody knows one. */
     sr_spectrum (*albedo)(const void *self, sr_vec3 wo);
-    bool is_random;  // f and pdf are themselves unbiased estimates: they depend on a seed in the data
+    bool is_random;  // f is itself an unbiased estimate: it depends on a seed in the data (for some parameters; pdf is a
+                     // plain function, but where sample says pdf_is_proportional it serves for weighing only)
     bool not_reciprocal;
 };
 extern const struct sr_bsdf_model *const sr_bsdf_models[]; // ends with NULL
@@ -100,6 +102,7 @@ struct sr_ggx {
     float alpha_x, alpha_y; // [1] slope widths
 };
 bool sr_ggx_is_smooth(struct sr_ggx g); // so smooth that it counts as a mirror: max alpha < 1e-3
+// the functions below raise each alpha to 1e-4 at least
 float sr_ggx_D(struct sr_ggx g, sr_vec3 wm);                            // [1/sr]
 float sr_ggx_G1(struct sr_ggx g, sr_vec3 w);                            // [1]
 float sr_ggx_G(struct sr_ggx g, sr_vec3 wo, sr_vec3 wi);                // [1]
@@ -129,13 +132,13 @@ struct sr_bsdf_thin_dielectric {
 struct sr_bsdf_coated {
     sr_spectrum base_reflectance;  // [1]  coateddiffuse
     sr_spectrum base_eta, base_k;  // [1]  coatedconductor, relative to the coat
-    sr_spectrum albedo;            // [1]  single-scattering albedo of the medium; black: clear
+    sr_spectrum albedo;            // [1]  single-scattering albedo of the medium; black: it only absorbs
     struct sr_ggx coat_ggx, base_ggx;
     float coat_eta;  // [1]
     float thickness; // [1] optical: in units of the medium's mean free path
     float g;         // [1] Henyey-Greenstein
     int32_t max_depth, sample_count;
-    uint32_t seed;   // of this vertex: f and pdf are random walks
+    uint32_t seed;   // of this vertex: f is a random walk
 };
 extern const struct sr_bsdf_model sr_bsdf_diffuse, sr_bsdf_diffuse_transmission, sr_bsdf_conductor, sr_bsdf_dielectric,
     sr_bsdf_thin_dielectric, sr_bsdf_coated_diffuse, sr_bsdf_coated_conductor;

@@ -100,24 +100,31 @@ static bool is_closed(const struct layers *l)
     return l->top.is_smooth && !l->has_medium;
 }
 
-/* The probability with which sample takes the mirror: the share of the light that it reflects. */
-static float mirror_probability(const struct sr_bsdf_coated *c, float cos_o, float inner)
+/* What sample chooses by: the share of light that the coat mirrors, and the largest share that the base returns. */
+struct shares {
+    float mirror;       // [1] F
+    float arrival;      // [1] A(wo)
+    sr_spectrum bounces; // [1]
+    float probability;  // [1] of the mirror
+};
+static struct shares shares_of(const struct sr_bsdf_coated *c, float cos_o)
 {
-    float unused, F = fresnel_and_cos(cos_o, c->coat_eta, &unused);
-    float matte = arrival(c, cos_o) * sr_spectrum_max(bounces(c, inner)) * (1 - inner);
-    return F + matte > 0 ? F / (F + matte) : 0;
+    struct shares s;
+    float cos_t, inner = inner_reflectance(c->coat_eta, c->thickness);
+    s.mirror = fresnel_and_cos(cos_o, c->coat_eta, &cos_t);
+    s.arrival = s.mirror < 1 ? (1 - s.mirror) * crossing(c->thickness, (sr_vec3){0, 0, cos_t}) : 0;
+    s.bounces = bounces(c, inner);
+    float matte = s.arrival * sr_spectrum_max(s.bounces) * (1 - inner);
+    s.probability = matte > 0 ? s.mirror / (s.mirror + matte) : 1;
+    return s;
 }
 
-/* Smooth coat: the density is exact. Else: the density of the coat's lobe, and of the base's as if the coat were
- * smooth; it serves for weighing only. */
-static float density(const struct layers *l, sr_vec3 wo, sr_vec3 wi)
+/* For weighing only: the coat's own lobe, and the base's as if the coat were smooth. One machine code for all who ask. */
+__attribute__((noinline)) static float density(const struct layers *l, sr_vec3 wo, sr_vec3 wi)
 {
-    const struct sr_bsdf_coated *c = l->c;
     float cosine = wi.z * SR_INV_PI, top;
-    if (is_closed(l))
-        return (1 - mirror_probability(c, wo.z, inner_reflectance(c->coat_eta, c->thickness))) * cosine;
     interface_f_pdf(&l->top, wo, wi, SR_LOBE_REFLECTION | SR_LOBE_TRANSMISSION, &top);
-    float F = fresnel(wo.z, c->coat_eta);
+    float F = fresnel(wo.z, l->c->coat_eta);
     return 0.9f * (top + (1 - F) * cosine) + 0.1f * cosine;
 }
 
@@ -174,13 +181,9 @@ static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_trans
         *p = density(&l, wo, wi);
         return l.has_medium ? layered_f(&l, false, wo, wi) : rough_f(&l, wo, wi);
     }
-    float inner = inner_reflectance(c->coat_eta, c->thickness);
-    sr_spectrum matte = bounces(c, inner);
-    float cos_t, F = fresnel_and_cos(wo.z, c->coat_eta, &cos_t);
-    float in = F < 1 ? (1 - F) * crossing(c->thickness, (sr_vec3){0, 0, cos_t}) : 0;
-    float shown = in * sr_spectrum_max(matte) * (1 - inner);
-    *p = shown > 0 ? shown / (F + shown) * wi.z * SR_INV_PI : 0;
-    return matte * (in * arrival(c, wi.z) * (SR_INV_PI / (c->coat_eta * c->coat_eta)));
+    struct shares share = shares_of(c, wo.z);
+    *p = (1 - share.probability) * (wi.z * SR_INV_PI);
+    return share.bounces * (share.arrival * arrival(c, wi.z) * (SR_INV_PI / (c->coat_eta * c->coat_eta)));
 }
 
 static sr_spectrum f(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode)
@@ -191,10 +194,14 @@ static sr_spectrum f(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport
 
 static float pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode)
 {
-    (void)mode;
     if (!(wo.z * wi.z > 0))
         return 0;
     struct layers l = layers_of(self, false);
+    if (is_closed(&l)) {
+        float p;
+        sr_bsdf_coated_diffuse.f_pdf(self, wo, wi, mode, &p);
+        return p;
+    }
     return density(&l, wo.z < 0 ? sr_neg(wo) : wo, wo.z < 0 ? sr_neg(wi) : wi);
 }
 
@@ -208,17 +215,21 @@ static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum s
     if (below)
         wo = sr_neg(wo);
     if (is_closed(&l)) {
-        float mirror = mirror_probability(c, wo.z, inner_reflectance(c->coat_eta, c->thickness));
-        *s = (struct sr_bsdf_sample){.eta = 1, .pdf = mirror, .wi = {-wo.x, -wo.y, wo.z}};
-        if (u_lobe < mirror) {
+        struct shares share = shares_of(c, wo.z);
+        *s = (struct sr_bsdf_sample){.eta = 1};
+        if (u_lobe < share.probability) {
+            s->wi = (sr_vec3){-wo.x, -wo.y, wo.z};
+            s->pdf = share.probability;
             s->lobe = SR_LOBE_REFLECTION | SR_LOBE_SPECULAR;
-            s->f = SR_BLACK + fresnel(wo.z, c->coat_eta) / wo.z;
+            s->f = SR_BLACK + share.mirror / wo.z;
+            drawn = share.mirror > 0;
         } else {
-            s->lobe = SR_LOBE_REFLECTION | SR_LOBE_DIFFUSE;
             s->wi = cosine_direction(u);
-            s->f = sr_bsdf_coated_diffuse.f_pdf(self, wo, s->wi, mode, &s->pdf);
+            s->pdf = (1 - share.probability) * (s->wi.z * SR_INV_PI);
+            s->lobe = SR_LOBE_REFLECTION | SR_LOBE_DIFFUSE;
+            s->f = share.bounces * (share.arrival * arrival(c, s->wi.z) * (SR_INV_PI / (c->coat_eta * c->coat_eta)));
+            drawn = s->pdf > 0;
         }
-        drawn = s->pdf > 0;
     } else
         drawn = layered_sample(&l, false, wo, u_lobe, u, s);
     if (below)
