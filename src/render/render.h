@@ -60,6 +60,14 @@ sr_status sr_render(const struct sr_render_job *job, struct sr_film **film, stru
 bool sr_render_sample(const struct sr_render_job *job, uint32_t x, uint32_t y, uint32_t replicate, uint32_t sample, float rgb[3],
                       struct sr_first_hit *first, struct sr_worker *worker);
 
+/* Irradiance at p on a surface element with normal n, with standard uncertainties from independent replicates. */
+struct sr_irradiance {
+    double E_v, E_v_error; // [lx]
+    double E_e, E_e_error; // [W/m^2] over the job's wavelength range
+    double degrees;        // of freedom, for Student's interval
+};
+struct sr_irradiance sr_render_irradiance(const struct sr_render_job *job, sr_vec3 p, sr_vec3 n, uint32_t samples, uint32_t replicates);
+
 /* The film as an image: R G B, and with error bars SE.R SE.G SE.B, samples, and the auxiliary channels if it has them.
  * Luminance-like channels are in cd/m^2. */
 sr_status sr_render_image(const struct sr_film *film, bool with_error, bool is_replicated, struct sr_image **image, struct sr_error *error);

@@ -37,6 +37,7 @@ static const char help[] =
     "      --disable-pixel-jitter, --disable-wavelength-jitter\n"
     "      --quick            a quarter of the size and of the samples\n"
     "      --pixel X,Y --sample K [--replicate R]   one sample alone, printed: what made this pixel?\n"
+    "      --irradiance PX,PY,PZ,NX,NY,NZ  also measure E at this point [m] with this normal (may be repeated)\n"
     "      --stats            more numbers about the scene and the work\n"
     "      --json             the summary as JSON on standard output\n"
     "      --stamp            write date and render time into the EXR, whose bytes then differ from run to run\n"
@@ -47,7 +48,7 @@ static const char help[] =
     "  steradian render scene.pbrt -o out.pfm --spp 256 --seed 2 --quiet\n"
     "  zcat scene.pbrt.gz | steradian render - -o out.exr --json\n";
 
-enum { MAX_OUTPUTS = 8 };
+enum { MAX_OUTPUTS = 8, MAX_METERS = 16, METER_SAMPLES = 4096, METER_REPLICATES = 32 };
 
 struct arguments {
     const char *scene, *outputs[MAX_OUTPUTS];
@@ -57,12 +58,14 @@ struct arguments {
     bool has_seed, has_pixel, aov, quiet, json, stats, no_pixel_jitter, no_lambda_jitter, has_exposure, stamp;
     double pixel[2], exposure_EV, partial_s, lambda[2];
     const char *sampler;
+    double meters[MAX_METERS][6]; // point and normal
+    int meter_count;
 };
 
 enum {
     OPT_SPP = 256, OPT_REPLICATES, OPT_SEED, OPT_THREADS, OPT_RESOLUTION, OPT_CROP, OPT_BOUNDS, OPT_LAMBDA, OPT_INTEGRATOR, OPT_SAMPLER,
     OPT_EXPOSURE, OPT_AOV, OPT_NO_AOV, OPT_PARTIAL, OPT_TILE, OPT_NO_PIXEL_JITTER, OPT_NO_LAMBDA_JITTER, OPT_QUICK, OPT_PIXEL, OPT_SAMPLE,
-    OPT_REPLICATE, OPT_STATS, OPT_JSON, OPT_STAMP,
+    OPT_REPLICATE, OPT_STATS, OPT_JSON, OPT_STAMP, OPT_IRRADIANCE,
 };
 
 static const struct option long_options[] = {
@@ -76,7 +79,7 @@ static const struct option long_options[] = {
     {"disable-pixel-jitter", no_argument, NULL, OPT_NO_PIXEL_JITTER}, {"disable-wavelength-jitter", no_argument, NULL, OPT_NO_LAMBDA_JITTER},
     {"quick", no_argument, NULL, OPT_QUICK}, {"pixel", required_argument, NULL, OPT_PIXEL}, {"sample", required_argument, NULL, OPT_SAMPLE},
     {"replicate", required_argument, NULL, OPT_REPLICATE}, {"stats", no_argument, NULL, OPT_STATS}, {"json", no_argument, NULL, OPT_JSON},
-    {"stamp", no_argument, NULL, OPT_STAMP}, {"quiet", no_argument, NULL, 'q'}, {NULL, 0, NULL, 0},
+    {"irradiance", required_argument, NULL, OPT_IRRADIANCE}, {"stamp", no_argument, NULL, OPT_STAMP}, {"quiet", no_argument, NULL, 'q'}, {NULL, 0, NULL, 0},
 };
 
 static bool take_numbers(struct arguments *a, int option, const char *name, const char *text)
@@ -110,6 +113,12 @@ static bool take_numbers(struct arguments *a, int option, const char *name, cons
             return true;
         command_usage(c, "--lambda %s: LO,HI in nm with 100 <= LO < HI <= 20000 was expected", text);
         return false;
+    case OPT_IRRADIANCE:
+        if (a->meter_count == MAX_METERS) {
+            command_usage(c, "at most %d irradiance meters", MAX_METERS);
+            return false;
+        }
+        return command_parse_floats(c, name, text, 6, a->meters[a->meter_count++]);
     case OPT_RESOLUTION:
         if (!command_parse_floats(c, name, text, 2, v))
             return false;
@@ -274,6 +283,22 @@ static double rate(double count, double time_s)
     return time_s > 0 ? count / time_s : 0;
 }
 
+static void print_meters(const struct arguments *a, const struct sr_render_job *job, json_t *list)
+{
+    for (int i = 0; i < a->meter_count; ++i) {
+        const double *m = a->meters[i];
+        struct sr_irradiance E = sr_render_irradiance(job, (sr_vec3){(float)m[0], (float)m[1], (float)m[2]}, (sr_vec3){(float)m[3], (float)m[4], (float)m[5]},
+                                                      METER_SAMPLES, METER_REPLICATES);
+        double k = sr_student_quantile(0.975, E.degrees);
+        if (!a->quiet)
+            fprintf(stderr, "irradiance at (%g, %g, %g) m, normal (%g, %g, %g): E_v = %.5g lx ± %.2g lx, E_e = %.5g W/m^2 ± %.2g W/m^2 (95 %%, k = %.2f, ν = %g)\n",
+                    m[0], m[1], m[2], m[3], m[4], m[5], E.E_v, k * E.E_v_error, E.E_e, k * E.E_e_error, k, E.degrees);
+        json_array_append_new(list, json_pack("{s:[f,f,f], s:[f,f,f], s:{s:s, s:f, s:f}, s:{s:s, s:f, s:f}, s:f, s:f}", "point_m", m[0], m[1], m[2], "normal",
+                                              m[3], m[4], m[5], "E_v", "unit", "lx", "value", E.E_v, "standard_uncertainty", E.E_v_error, "E_e", "unit", "W/m^2",
+                                              "value", E.E_e, "standard_uncertainty", E.E_e_error, "degrees_of_freedom", E.degrees, "coverage_factor", k));
+    }
+}
+
 static void print_summary(const struct running *r, const struct sr_film *film, const struct sr_render_report *report, const struct sr_scene_counts *counts)
 {
     struct sr_film_mean L = mean_luminance(film);
@@ -292,7 +317,7 @@ static void print_summary(const struct running *r, const struct sr_film *film, c
                 (unsigned long long)report->rays, (unsigned long long)report->shadow_rays, (unsigned long long)report->vertices, (unsigned long long)counts->degenerate);
 }
 
-static void print_json(const struct running *r, const struct sr_film *film, const struct sr_render_report *report, const struct sr_scene_counts *counts)
+static void print_json(const struct running *r, const struct sr_film *film, const struct sr_render_report *report, const struct sr_scene_counts *counts, json_t *meters)
 {
     struct sr_film_mean L = mean_luminance(film);
     double k = sr_student_quantile(0.975, L.degrees);
@@ -318,6 +343,7 @@ static void print_json(const struct running *r, const struct sr_film *film, cons
         "dropped_samples", (json_int_t)report->dropped, "primitives_without_area", (json_int_t)counts->degenerate);
     if (!j)
         return;
+    json_object_set(j, "irradiance", meters);
     json_dumpf(j, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     putchar('\n');
     json_decref(j);
@@ -388,8 +414,11 @@ static int render_scene(const struct arguments *a, struct sr_import_result *scen
     struct sr_scene_counts counts = sr_scene_count(scene->scene);
     if (!a->quiet)
         print_summary(&r, film, &report, &counts);
+    json_t *meters = json_array();
+    print_meters(a, &job, meters);
     if (a->json)
-        print_json(&r, film, &report, &counts);
+        print_json(&r, film, &report, &counts, meters);
+    json_decref(meters);
     sr_film_destroy(film);
     if (status == SR_CANCELLED) {
         fprintf(stderr, "steradian render: interrupted; what there was has been written\n");
