@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: MIT
+# The front door. `make` leaves the command at build/steradian; CMake does the work.
+BUILD ?= build
+PREFIX ?= /usr/local
+JOBS ?= $(shell nproc 2>/dev/null || echo 2)
+OUT ?= out
+
+.PHONY: all render test test-asan test-tsan bench check format install clean packages
+
+all: packages
+	@cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release >$(BUILD).log 2>&1 || { cat $(BUILD).log; exit 1; }
+	@cmake --build $(BUILD) --parallel $(JOBS)
+
+packages:
+	@scripts/install-packages
+
+# The project's own Cornell box, and how much light falls on its floor.
+render: all
+	@mkdir -p $(OUT)
+	$(BUILD)/steradian render scenes/cornell-box.pbrt -o $(OUT)/cornell-box.exr -o $(OUT)/cornell-box.png \
+	  --irradiance 0.278,0,0.2796,0,1,0
+	@echo "The picture: $(OUT)/cornell-box.png; with error bars and auxiliary channels: $(OUT)/cornell-box.exr"
+
+test: all
+	ctest --test-dir $(BUILD) --output-on-failure
+
+test-asan: packages
+	cmake --preset asan >/dev/null
+	cmake --build build-asan --parallel $(JOBS)
+	ctest --test-dir build-asan --output-on-failure
+
+test-tsan: packages
+	cmake --preset tsan >/dev/null
+	cmake --build build-tsan --parallel $(JOBS)
+	ctest --test-dir build-tsan --output-on-failure -L tsan
+
+bench: all
+	$(BUILD)/sr_bench
+
+# format, house rules, fast tests: what one runs before a commit
+check: all
+	ctest --test-dir $(BUILD) --output-on-failure -L fast
+
+format:
+	git ls-files '*.c' '*.h' | xargs clang-format -i
+
+install: all
+	cmake --install $(BUILD) --prefix $(PREFIX)
+
+clean:
+	rm -rf $(BUILD) build-asan build-tsan build-debug $(OUT) *.log
