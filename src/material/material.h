@@ -18,10 +18,12 @@ struct sr_material_context {
 struct sr_material {
     const struct sr_material_model *model; // NULL: interface, light passes as if nothing were there
     const void *self;
-    struct sr_texture displacement;        // bump [m], or none
-    struct sr_texels normal_map;           // width 0: none
+    struct sr_texture displacement;        // bump [m], or none: the scene file's "displacement", of any material
+    struct sr_texels normal_map;           // width 0: none; "normalmap": numbers, bytes count as byte / 255
 };
 
+/* One file of src/material/ each. The importer fills the struct by the table, calls prepare once, and from then on the
+ * material never changes. Textures that a table leaves out may be of NULL model: prepare knows the defaults. */
 struct sr_material_model {
     const char *name; // the scene file's word
     const struct sr_param *params;
