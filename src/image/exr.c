@@ -150,7 +150,27 @@ struct chunks {
     const uint32_t *place;
     exr_decode_pipeline_t pipeline;
     bool is_started;
+    exr_result_t (*decompress)(exr_decode_pipeline_t *);
 };
+
+/* A chunk that B44 could not make smaller is stored as it is; versions of the library up to 3.1 unpack it all the same. */
+static exr_result_t decompress_b44(exr_decode_pipeline_t *pipeline)
+{
+    struct chunks *k = pipeline->decoding_user_data;
+    size_t size = (size_t)pipeline->chunk.unpacked_size;
+    if (pipeline->chunk.packed_size != size)
+        return k->decompress(pipeline);
+    if (pipeline->unpacked_alloc_size >= size) {
+        memcpy(pipeline->unpacked_buffer, pipeline->packed_buffer, size);
+        return EXR_ERR_SUCCESS;
+    }
+    // the library's own sign for "the same bytes": both pointers are equal, and the second owns nothing
+    if (pipeline->unpacked_alloc_size > 0)
+        sr_free(pipeline->unpacked_buffer);
+    pipeline->unpacked_buffer = pipeline->packed_buffer;
+    pipeline->unpacked_alloc_size = 0;
+    return EXR_ERR_SUCCESS;
+}
 
 /* One chunk, whose first pixel is (x, y) of the image, straight into the interleaved floats. */
 static exr_result_t read_chunk(struct chunks *k, const exr_chunk_info_t *info, uint32_t x, uint32_t y)
@@ -177,6 +197,11 @@ static exr_result_t read_chunk(struct chunks *k, const exr_chunk_info_t *info, u
     }
     if (is_first)
         result = exr_decoding_choose_default_routines(k->exr, 0, &k->pipeline);
+    if (is_first && k->pipeline.decompress_fn && (info->compression == EXR_COMPRESSION_B44 || info->compression == EXR_COMPRESSION_B44A)) {
+        k->decompress = k->pipeline.decompress_fn;
+        k->pipeline.decoding_user_data = k;
+        k->pipeline.decompress_fn = decompress_b44;
+    }
     return result == EXR_ERR_SUCCESS ? exr_decoding_run(k->exr, 0, &k->pipeline) : result;
 }
 
@@ -259,7 +284,7 @@ static sr_status read_part(exr_context_t exr, struct job *job, struct sr_image *
         status = read_attributes(exr, *image, error);
     }
     if (status == SR_OK) {
-        struct chunks k = {exr, *image, place, EXR_DECODE_PIPELINE_INITIALIZER, false};
+        struct chunks k = {.exr = exr, .image = *image, .place = place};
         exr_result_t result = storage == EXR_STORAGE_TILED ? read_tiles(&k) : read_lines(&k, &data);
         if (k.is_started)
             exr_decoding_destroy(exr, &k.pipeline);

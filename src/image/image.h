@@ -74,7 +74,8 @@ sr_status sr_image_to_float(struct sr_image *image, struct sr_error *error);
 /* ---- files ---- */
 
 /* The format is told by the first bytes, and where they say nothing (TGA) by the file's ending. What is read:
- *   EXR   scan lines and tiles (level 0) of the first part; half, float, uint; all compressions; every channel, in the file's
+ *   EXR   scan lines and tiles (level 0) of the first part; half, float, uint; all compressions of
+ *         the library (DWAA and DWAB not before its version 3.2); every channel, in the file's
  *         (alphabetic) order except that R, G, B, A come in this order and first; text attributes, chromaticities;
  *         attributes "unit.NAME" become units. Deep data and subsampled channels are refused.
  *   PNG   8 bits or fewer become bytes; 16 bits become linear floats. Grey, RGB, palette, alpha. gAMA and iCCP are not used.
