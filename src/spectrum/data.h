@@ -11,7 +11,7 @@ extern const double sr_data_observer[SR_OBSERVER_COUNT][3];
 extern const float sr_data_observer_f[SR_OBSERVER_COUNT + 1][4];
 extern const struct sr_colour_space sr_data_colour_spaces[SR_COLOUR_SPACE_COUNT];
 
-extern const struct sr_table sr_data_a, sr_data_d50, sr_data_d65, sr_data_aces_d60;
+extern const struct sr_table sr_data_a, sr_data_pbrt_d50, sr_data_d50, sr_data_d65, sr_data_aces_d60;
 extern const struct sr_table sr_data_f1, sr_data_f2, sr_data_f3, sr_data_f4, sr_data_f5, sr_data_f6;
 extern const struct sr_table sr_data_f7, sr_data_f8, sr_data_f9, sr_data_f10, sr_data_f11, sr_data_f12;
 

@@ -50,7 +50,7 @@ static sr_spectrum blackbody_eval(float T, sr_spectrum lambda)
     sr_spectrum series = x * (1.0f + x * (0.5f + x * (1.0f / 6 + x * (1.0f / 24))));
     expm1 = sr_spectrum_select(x < 0.1f, series, expm1);
     sr_spectrum value = y2 * y2 * y * (float)PEAK_EXPM1 / expm1;
-    return sr_spectrum_select(x < 80.0f, value, SR_BLACK);
+    return sr_spectrum_select(x < 88.0f, value, SR_BLACK);
 }
 
 sr_spectrum sr_spd_eval(const struct sr_spd *s, sr_spectrum lambda)

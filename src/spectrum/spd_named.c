@@ -2,7 +2,8 @@
 /* Spectra with names: pbrt's, their aliases, and ours.
  *
  * pbrt's glass-F5, -F10 and -F11 hold the data of SF5, SF10 and SF11; they keep their names here and have true ones beside
- * them. Illuminants are scaled as their sources print them (100 at 560 nm), indices are numbers [1]. */
+ * them. Its stdillum-D50 (x = 0.3368, y = 0.3580) is not CIE's, which is illum-cieD50 (0.3457, 0.3585).
+ * Illuminants are scaled as their sources print them (mostly 100 at 560 nm); indices are numbers [1]. */
 #include "spectrum/data.h"
 
 #include <string.h>
@@ -38,7 +39,7 @@ static const struct named names[] = {
     {"metal-TiO2-eta", &sr_data_tio2_eta},
     {"metal-TiO2-k", &sr_data_tio2_k},
     {"stdillum-A", &sr_data_a},
-    {"stdillum-D50", &sr_data_d50},
+    {"stdillum-D50", &sr_data_pbrt_d50},
     {"stdillum-D65", &sr_data_d65},
     {"stdillum-E", NULL},
     {"stdillum-F1", &sr_data_f1},
@@ -53,6 +54,7 @@ static const struct named names[] = {
     {"stdillum-F10", &sr_data_f10},
     {"stdillum-F11", &sr_data_f11},
     {"stdillum-F12", &sr_data_f12},
+    {"illum-cieD50", &sr_data_d50},
     {"illum-acesD60", &sr_data_aces_d60},
 };
 
