@@ -65,7 +65,8 @@ struct sr_spd sr_spd_from_rgb_albedo(enum sr_colour_space_id space, struct sr_rg
 // half way up the sigmoid there is room for any hue; a black keeps scale 0
 static struct sr_spd scaled(enum sr_colour_space_id space, struct sr_rgb rgb)
 {
-    float scale = 2 * fmaxf(rgb.r, fmaxf(rgb.g, rgb.b));
+    float most = rgb.r > rgb.g ? rgb.r : rgb.g;
+    float scale = 2 * (most > rgb.b ? most : rgb.b);
     if (!(scale > 0))
         return sr_spd_constant(0);
     struct sr_rgb share = {rgb.r / scale, rgb.g / scale, rgb.b / scale};

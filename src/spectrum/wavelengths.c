@@ -39,8 +39,14 @@ struct sr_wavelengths sr_wavelengths_sample(struct sr_lambda_range range, float 
     v += u;
     v = sr_spectrum_select(v >= 1.0f, v - 1.0f, v);
 
-    float e_lo = expf(fminf(SLOPE * (range.lo - CENTRE), TAIL));
-    float d = expm1f(fminf(SLOPE * (range.hi - range.lo), TAIL));
+    float x = SLOPE * (range.lo - CENTRE), y = SLOPE * (range.hi - range.lo);
+    y = y < TAIL ? y : TAIL;
+    sr_spectrum exponents = SR_BLACK + y;
+    exponents[0] = x < TAIL ? x : TAIL;
+    sr_spectrum exponentials = sr_spectrum_exp(exponents);
+    float e_lo = exponentials[0], d = exponentials[1] - 1;
+    if (y < 0.25f) // the series keeps the digits that the difference loses
+        d = y * (1 + y / 2 * (1 + y / 3 * (1 + y / 4 * (1 + y / 5 * (1 + y / 6)))));
     float above_lo = 1 + e_lo, above_hi = 1 + e_lo * (1 + d);
     sr_spectrum share = v * d;
     sr_spectrum grown = 1.0f + share * above_lo / (above_lo + e_lo * (d - share)); // 1 + delta
