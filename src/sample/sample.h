@@ -56,9 +56,77 @@ struct sr_sampler sr_sampler_start(enum sr_sampler_kind kind, uint32_t seed, uin
                                    uint32_t replicate, uint32_t sample);
 
 /* Four numbers in [0, 1) for one purpose ("group"); within a group the four are one 4-D Sobol' net whose components x, y
- * form a (0,2)-sequence: give x, y to what matters most. */
+ * form a (0,2)-sequence: give x, y to what matters most.
+ *
+ *     i' = shuffle(i; key, group),    x = reverse(owen(S_0[i'_0] ^ S_1[i'_1] ^ …; key, group, lane)) 2^-32
+ *
+ * S holds bit-reversed Sobol' points for each byte of the index (S. Joe & F. Kuo 2008). Owen's nested scrambling is a hash
+ * in which each bit depends on lower ones only (S. Laine & T. Karras 2011, constants by N. Vegdahl 2021); shuffling the
+ * index the same way makes groups independent (B. Burley, Practical Hash-based Owen Scrambling, 2020). The shuffle stays
+ * within blocks of 65536, so that smaller indices need two look-ups. */
 typedef float sr_u4 __attribute__((vector_size(16)));
-sr_u4 sr_sample4(const struct sr_sampler *s, uint32_t group);
+typedef uint32_t sr_u4_bits __attribute__((vector_size(16)));
+extern const sr_u4_bits sr_sobol_table[4][256];
+extern const uint8_t sr_reversed_byte[256];
+sr_u4_bits sr_sobol_high(uint32_t high_half, uint32_t *seed); // what an index >= 65536 adds
+
+static inline sr_u4 sr_bits_to_u4(sr_u4_bits x) // [0, 1), 24 bits
+{
+    typedef int32_t sr_i4 __attribute__((vector_size(16)));
+    return __builtin_convertvector((sr_i4)(x >> 8), sr_u4) * 0x1p-24f;
+}
+
+static inline sr_u4_bits sr_reverse_bits_u4(sr_u4_bits x)
+{
+    typedef uint8_t sr_bytes16 __attribute__((vector_size(16)));
+    sr_bytes16 bytes = (sr_bytes16)x;
+    x = (sr_u4_bits)__builtin_shufflevector(bytes, bytes, 3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12);
+    x = (x & 0x0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0fu);
+    x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
+    return (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
+}
+
+static inline sr_u4 sr_sample4(const struct sr_sampler *s, uint32_t group)
+{
+    // 64 bits for the purpose, a third and a fourth product for the lanes; the key has been hashed well already
+    typedef uint64_t sr_wide2 __attribute__((vector_size(16)));
+    uint64_t wide = (s->key ^ (uint64_t)group << 32) * 0x9e3779b97f4a7c15ull;
+    wide = (wide ^ wide >> 32) * 0xd6e8feb86659fd93ull;
+    wide ^= wide >> 32;
+    uint64_t index = s->sample;
+    if (SR_UNLIKELY(s->kind == SR_SAMPLER_INDEPENDENT)) {
+        wide = (wide ^ index << 32 ^ index) * 0x9e3779b97f4a7c15ull;
+        wide = (wide ^ wide >> 29) * 0xbf58476d1ce4e5b9ull;
+        wide ^= wide >> 32;
+    }
+    sr_wide2 product = {wide * 0xbf58476d1ce4e5b9ull, wide * 0x94d049bb133111ebull};
+    sr_u4_bits lane = (sr_u4_bits)(product ^ product >> 32);
+    if (SR_UNLIKELY(s->kind == SR_SAMPLER_INDEPENDENT)) {
+        lane *= 0x21f0aaadu;
+        lane ^= lane >> 15;
+        lane *= 0xd35a2d97u;
+        return sr_bits_to_u4(lane ^ lane >> 15);
+    }
+
+    uint32_t seed = (uint32_t)wide;
+    sr_u4_bits x = {0, 0, 0, 0};
+    if (SR_UNLIKELY(index >> 16))
+        x = sr_sobol_high((uint32_t)index >> 16, &seed);
+    uint32_t i = (uint32_t)sr_reversed_byte[index & 255] << 8 | sr_reversed_byte[index >> 8 & 255];
+    i ^= i * 0x3d20adeau;
+    i += seed;
+    i *= seed >> 16 | 1;
+    i ^= i * 0x05526c56u;
+    i ^= i * 0x53a22864u;
+    x ^= sr_sobol_table[1][i & 255] ^ sr_sobol_table[0][i >> 8 & 255];
+
+    x ^= x * 0x3d20adeau;
+    x += lane;
+    x *= lane >> 16 | 1;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return sr_bits_to_u4(sr_reverse_bits_u4(x));
+}
 
 /* ---- warps: uniform numbers to shapes, with densities ---- */
 

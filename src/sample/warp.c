@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: MIT */
+/* Warps of the unit square to disks, spheres, cones, triangles and simple densities.
+ *
+ *     disk: r = a, phi = pi/4 b/a (concentric);   sphere: z = 1 - 2 u;   cone: 1 - z = u (1 - cos_max)
+ *     cosine hemisphere: z = sqrt(1 - r^2) over the disk (Malley);   exponential: x = -log(1 - u) / a
+ *
+ * P. Shirley & K. Chiu, A Low Distortion Map Between Disk and Square, 1997; E. Heitz, A Low-Distortion Map Between
+ * Triangle and Square, 2019. Sines are polynomials on an eighth turn, off by less than 1e-7. */
+#include "sample/sample.h"
+
+// sine and cosine of x in -pi/4 … pi/4 [rad], by Taylor's series
+static void sin_cos_eighth(float x, float *s, float *c)
+{
+    float x2 = x * x;
+    *s = x + x * x2 * (-1.0f / 6 + x2 * (1.0f / 120 + x2 * (-1.0f / 5040 + x2 * (1.0f / 362880))));
+    *c = 1 + x2 * (-0.5f + x2 * (1.0f / 24 + x2 * (-1.0f / 720 + x2 * (1.0f / 40320))));
+}
+
+// of a share of the whole turn in 0 … 1
+static void sin_cos_turn(float turn, float *s, float *c)
+{
+    int quarter = (int)(4 * turn + 0.5f);
+    float x, y;
+    sin_cos_eighth((turn - 0.25f * (float)quarter) * (2 * SR_PI), &y, &x);
+    bool odd = quarter & 1;
+    float a = odd ? y : x, b = odd ? x : y;
+    *c = (quarter + 1) & 2 ? -a : a;
+    *s = quarter & 2 ? -b : b;
+}
+
+sr_vec2 sr_warp_disk(sr_vec2 u)
+{
+    float a = 2 * u.x - 1, b = 2 * u.y - 1, s, c;
+    bool wide = fabsf(a) > fabsf(b);
+    float r = wide ? a : b, across = wide ? b : a;
+    if (r == 0)
+        return (sr_vec2){0, 0};
+    sin_cos_eighth(SR_PI / 4 * (across / r), &s, &c);
+    return wide ? (sr_vec2){r * c, r * s} : (sr_vec2){r * s, r * c};
+}
+
+sr_vec3 sr_warp_uniform_sphere(sr_vec2 u)
+{
+    float s, c, sin_theta = 2 * sqrtf(u.x * (1 - u.x));
+    sin_cos_turn(u.y, &s, &c);
+    return (sr_vec3){sin_theta * c, sin_theta * s, 1 - 2 * u.x};
+}
+
+sr_vec3 sr_warp_uniform_hemisphere(sr_vec2 u)
+{
+    float s, c, sin_theta = sqrtf((1 - u.x) * (1 + u.x));
+    sin_cos_turn(u.y, &s, &c);
+    return (sr_vec3){sin_theta * c, sin_theta * s, u.x};
+}
+
+sr_vec3 sr_warp_cosine_hemisphere(sr_vec2 u)
+{
+    sr_vec2 d = sr_warp_disk(u);
+    return (sr_vec3){d.x, d.y, sr_safe_sqrt(1 - d.x * d.x - d.y * d.y)};
+}
+
+sr_vec3 sr_warp_uniform_cone(sr_vec2 u, float one_minus_cos_max)
+{
+    float s, c, one_minus_cos = u.x * one_minus_cos_max;
+    float sin_theta = sr_safe_sqrt(one_minus_cos * (2 - one_minus_cos));
+    sin_cos_turn(u.y, &s, &c);
+    return (sr_vec3){sin_theta * c, sin_theta * s, 1 - one_minus_cos};
+}
+
+sr_vec2 sr_warp_triangle(sr_vec2 u)
+{
+    if (u.y > u.x)
+        return (sr_vec2){0.5f * u.x, u.y - 0.5f * u.x};
+    return (sr_vec2){u.x - 0.5f * u.y, 0.5f * u.y};
+}
+
+float sr_warp_exponential(float u, float a)
+{
+    return -log1pf(-u) / a;
+}
+
+// x in 0 … 1 with density proportional to lerp(x, a, b)
+static float sample_linear(float u, float a, float b)
+{
+    float root = a + sqrtf(sr_lerp(u, a * a, b * b));
+    return root > 0 ? fminf(u * (a + b) / root, SR_ONE_MINUS_EPSILON) : u;
+}
+
+sr_vec2 sr_warp_bilinear(sr_vec2 u, const float w[4])
+{
+    float y = sample_linear(u.y, w[0] + w[1], w[2] + w[3]);
+    float x = sample_linear(u.x, sr_lerp(y, w[0], w[2]), sr_lerp(y, w[1], w[3]));
+    return (sr_vec2){x, y};
+}
+
+float sr_warp_bilinear_pdf(sr_vec2 p, const float w[4])
+{
+    if (!(p.x >= 0 && p.x <= 1 && p.y >= 0 && p.y <= 1))
+        return 0;
+    float sum = w[0] + w[1] + w[2] + w[3];
+    return sum > 0 ? 4 * sr_lerp(p.y, sr_lerp(p.x, w[0], w[1]), sr_lerp(p.x, w[2], w[3])) / sum : 1;
+}
