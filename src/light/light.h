@@ -24,7 +24,7 @@ struct sr_light_sample {
     float distance;     // [m]; INFINITY for light from outside the scene
     sr_vec3 p, p_error, n; // [m] [m] [1] where it leaves; n = 0 for lights without surface; unused at INFINITY
     float pdf;          // [1/sr]
-    bool is_delta;
+    bool is_delta;      // no ray meets this light by chance, so that this sample has weight 1 (also area lights that are ghosts)
 };
 
 /* What the tree of lights knows of a light (Conty Estevez & Kulla 2018). */
@@ -33,7 +33,8 @@ struct sr_light_bounds {
     sr_vec3 axis;          // [1]
     float cos_theta_o;     // [1] spread of the normals about the axis
     float cos_theta_e;     // [1] reach of the emission beyond them
-    float power;           // luminous integral of the emitted flux [cd sr]; 0: never chosen by the tree
+    float power;           // luminous integral of the emitted flux [cd sr], with a grain for light that nobody sees;
+                           // 0: never chosen
     bool two_sided;
 };
 
@@ -47,12 +48,15 @@ struct sr_light_model {
     /* Once the scene's extent is known (infinite lights); may be NULL. */
     void (*place)(void *self, sr_vec3 scene_centre, float scene_radius);
     bool (*sample)(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s);
-    /* Density [1/sr] of sample() for wi; `there` is the point met on a shape, NULL for infinite lights. Delta lights: 0. */
+    /* Density [1/sr] of sample() for wi; `there` is the point met on a shape, NULL for infinite lights. Delta lights: 0. It
+     * may be 0 where light comes from (a uniform sky, the dim part of an image): that light is for the surface's own choice
+     * of direction to find, with weight 1. */
     float (*pdf)(const void *self, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there);
     /* Radiance leaving `there` toward w (area lights), or arriving along a ray that escapes in direction -w (infinite, there NULL). */
     sr_spectrum (*Le)(const void *self, const struct sr_point *there, sr_vec3 w, const struct sr_wavelengths *wavelengths);
-    bool (*bounds)(const void *self, struct sr_light_bounds *bounds); // false: infinite
-    float (*power)(const void *self);                                 // as in sr_light_bounds
+    bool (*bounds)(const void *self, struct sr_light_bounds *bounds); // false: infinite, power alone is set
+    float (*power)(const void *self); // luminous integral of the emitted flux [cd sr]; infinite: of what enters the scene's
+                                      // sphere, and 0 for a uniform sky, which is never chosen
 };
 extern const struct sr_light_model *const sr_light_models[]; // ends with NULL
 const struct sr_light_model *sr_light_model_find(const char *name);
@@ -74,14 +78,23 @@ struct sr_light_emission {
     const char *filename;
     struct sr_texels texels; // image over the surface's (u, v), or width 0
     enum sr_colour_space_id space;
-    float derived_scale;     // of L: makes its luminance that of `scale` (or power) [cd/m^2]
+    // derived by sr_light_emission_prepare
+    struct sr_spd emitted;   // radiance: L, made to have the luminance that scale and power ask for [.../(m^2 sr nm)]
+    float derived_scale;     // the same factor for the image: of an RGB value's illuminant spectrum
+    float luminance;         // [cd/m^2] mean over the surface
+    float choice_luminance;  // [cd/m^2] the same, never 0 for what glows at any wavelength
 };
 extern const struct sr_param sr_light_emission_params[];
 sr_status sr_light_emission_prepare(struct sr_light_emission *e, float total_area, struct sr_arena *arena, struct sr_error *error);
 extern const struct sr_light_model sr_light_area;
 
-/* point, spot, distant: self structs are private to their files except what the importer sets: a transform. Where
- * struct sr_transform light_to_world, struct sr_texels (image) and enum sr_colour_space_id sit; SIZE_MAX: nowhere. */
+/* How every self of sr_light_models[] begins (not struct sr_light_area): what the importer sets beside the parameters. */
+struct sr_light_common {
+    struct sr_transform light_to_world; // the transform in force at the directive
+    struct sr_texels texels;            // of the image, for models that have a row of kind SR_PARAM_FILE
+    enum sr_colour_space_id space;      // in force at the directive: its white shines where no spectrum is given
+};
+/* Where its members sit in a model's self [B]; SIZE_MAX: nowhere (area lights; texels where no image is read). */
 size_t sr_light_transform_offset(const struct sr_light_model *model);
 size_t sr_light_texels_offset(const struct sr_light_model *model);
 size_t sr_light_space_offset(const struct sr_light_model *model);
@@ -98,14 +111,17 @@ enum sr_light_choice { SR_LIGHTS_BVH, SR_LIGHTS_POWER, SR_LIGHTS_UNIFORM };
 struct sr_lights {
     const struct sr_light *lights;
     uint32_t count;
-    const uint32_t *infinite; // indices of the infinite lights
+    const uint32_t *infinite; // indices of the infinite lights that a ray can escape to: not the distant ones
     uint32_t infinite_count;
     enum sr_light_choice choice;
     const void *tree;         // private: nodes, each light's way to its leaf, alias table
 };
+/* Infinite lights must have been placed before. With SR_LIGHTS_BVH each infinite light has the same share as all others
+ * together. Keeps `lights`. */
 sr_status sr_lights_build(struct sr_arena *arena, const struct sr_light *lights, uint32_t count, enum sr_light_choice choice,
                           struct sr_lights *out, struct sr_error *error);
-/* Chooses one for a receiver with normal x->ns (zero for volumes); false: none can contribute. u is used up. */
+/* Chooses one for a receiver with normal x->ns (zero for volumes); false: none of those looked at can contribute. u is used
+ * up. Only x->p and x->ns are read. */
 bool sr_lights_pick(const struct sr_lights *lights, const struct sr_point *x, float u, uint32_t *index, float *pmf);
 /* The probability with which pick would have chosen it. */
 float sr_lights_pmf(const struct sr_lights *lights, const struct sr_point *x, uint32_t index);

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: MIT */
+/* A surface that glows evenly in all directions.
+ *
+ *     L(x, w) = L         on the outside, or on both sides            Phi = pi A L        [lm] a side
+ *
+ * L is scaled to the luminance `scale` [cd/m^2], or so that the whole shape gives off scale * power. With an image the
+ * radiance is rgb(u, 1-v) of the image, bilinear between texel centres, times the white of its colour space; its mean over
+ * (u, v) is taken as the mean over the surface. J. H. Lambert, Photometria, 1760.
+ * Limits: power is exact for an image only where (u, v) maps area evenly. */
+#include "light/emission.h"
+
+const struct sr_param sr_light_emission_params[] = {
+    {SR_PARAM_ILLUMINANT, "L", "cd/m^2", 0, INFINITY, NAN, offsetof(struct sr_light_emission, L), "radiance; only its shape counts, rgb its brightness, too"},
+    {SR_PARAM_FLOAT, "scale", "1", 0, INFINITY, 1, offsetof(struct sr_light_emission, scale), "factor"},
+    {SR_PARAM_BOOL, "twosided", "1", 0, 1, 0, offsetof(struct sr_light_emission, two_sided), "both sides glow"},
+    {SR_PARAM_FLOAT, "power", "lm", -INFINITY, INFINITY, NAN, offsetof(struct sr_light_emission, power), "luminous flux of the whole shape, if above 0"},
+    {SR_PARAM_FILE, "filename", "1", 0, 0, 0, offsetof(struct sr_light_emission, filename), "image over the surface instead of L"},
+    {.name = NULL},
+};
+
+sr_status sr_light_emission_prepare(struct sr_light_emission *e, float total_area, struct sr_arena *arena, struct sr_error *error)
+{
+    (void)arena;
+    bool has_image = e->texels.width > 0;
+    double mean = 1; // luminance over that of white
+    if (has_image) {
+        if (e->L.kind != SR_SPD_NONE)
+            return sr_fail(error, SR_ERROR_INPUT, "an area light takes \"L\" or \"filename\" (%s), not both", e->filename);
+        if (sr_light_check_texels(&e->texels, e->filename, error))
+            return error->status;
+        mean = sr_light_mean_luminance(&e->texels);
+    }
+    double luminance = (double)e->scale;
+    if (e->power > 0) {
+        double flux = (double)SR_PI * (double)total_area * mean * (e->two_sided ? 2 : 1);
+        if (!(flux > 0))
+            return sr_fail(error, SR_ERROR_INPUT, "an area light with \"power\" needs an area and an image that is not black");
+        luminance *= (double)e->power / flux;
+    }
+    e->emitted = e->L;
+    enum sr_colour_space_id space = has_image ? e->texels.space : e->space;
+    if (sr_light_normalise(&e->emitted, space, (float)luminance, error))
+        return error->status;
+    if (has_image) {
+        e->derived_scale = (float)(luminance / sr_colour_space(space)->illuminant_luminous_integral);
+        e->luminance = (float)(luminance * mean);
+        e->choice_luminance = e->luminance;
+    } else {
+        e->derived_scale = e->L.scale != 0 ? e->emitted.scale / e->L.scale : e->emitted.scale;
+        e->luminance = (float)sr_spd_luminous_integral(&e->emitted);
+        e->choice_luminance = sr_light_choice_weight(&e->emitted);
+    }
+    return SR_OK;
+}
+
+static sr_spectrum image_radiance(const struct sr_light_emission *e, sr_vec2 uv, const struct sr_wavelengths *w)
+{
+    const struct sr_texels *t = &e->texels;
+    float x = sr_clamp(uv.x * (float)t->width - 0.5f, 0, (float)(t->width - 1));
+    float y = sr_clamp((1 - uv.y) * (float)t->height - 0.5f, 0, (float)(t->height - 1));
+    uint32_t x0 = (uint32_t)x, y0 = (uint32_t)y;
+    uint32_t x1 = x0 + 1 < t->width ? x0 + 1 : x0, y1 = y0 + 1 < t->height ? y0 + 1 : y0;
+    float fx = x - (float)x0, fy = y - (float)y0;
+    struct sr_rgb a = sr_light_texel(t, x0, y0), b = sr_light_texel(t, x1, y0), c = sr_light_texel(t, x0, y1), d = sr_light_texel(t, x1, y1);
+    struct sr_rgb rgb = {sr_lerp(fy, sr_lerp(fx, a.r, b.r), sr_lerp(fx, c.r, d.r)), sr_lerp(fy, sr_lerp(fx, a.g, b.g), sr_lerp(fx, c.g, d.g)),
+                         sr_lerp(fy, sr_lerp(fx, a.b, b.b), sr_lerp(fx, c.b, d.b))};
+    if (rgb.r + rgb.g + rgb.b <= 0)
+        return SR_BLACK;
+    struct sr_spd s = sr_spd_from_rgb_illuminant(t->space, rgb);
+    return sr_spd_eval(&s, w->lambda) * e->derived_scale;
+}
+
+static sr_spectrum radiance(const struct sr_light_emission *e, sr_vec3 n, sr_vec2 uv, sr_vec3 w, const struct sr_wavelengths *wavelengths)
+{
+    if (!e->two_sided && sr_dot(n, w) <= 0)
+        return SR_BLACK;
+    return e->texels.width ? image_radiance(e, uv, wavelengths) : sr_spd_eval(&e->emitted, wavelengths->lambda);
+}
+
+static sr_spectrum Le(const void *self, const struct sr_point *there, sr_vec3 w, const struct sr_wavelengths *wavelengths)
+{
+    return radiance(((const struct sr_light_area *)self)->emission, there->n, there->uv, w, wavelengths);
+}
+
+static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
+{
+    const struct sr_light_area *m = self;
+    struct sr_shape_sample x;
+    if (!m->shape.model->sample(m->shape.self, m->primitive, reference, u, &x) || !(x.pdf > 0) || isinf(x.pdf))
+        return false;
+    sr_vec3 d = sr_sub(x.p, reference->p);
+    float r = sr_length(d);
+    if (!(r > 0))
+        return false;
+    sr_vec3 wi = sr_scale(1 / r, d);
+    *s = (struct sr_light_sample){.L = radiance(m->emission, x.n, x.uv, sr_neg(wi), w), .wi = wi, .distance = r, .p = x.p,
+                                  .p_error = x.p_error, .n = x.n, .pdf = x.pdf, .is_delta = m->is_ghost};
+    return !sr_spectrum_is_black(s->L);
+}
+
+static float pdf(const void *self, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there)
+{
+    const struct sr_light_area *m = self;
+    if (m->is_ghost)
+        return 0;
+    return m->shape.model->pdf(m->shape.self, m->primitive, reference, wi, there);
+}
+
+static float power(const void *self)
+{
+    const struct sr_light_area *m = self;
+    return SR_PI * m->area * m->emission->luminance * (m->emission->two_sided ? 2 : 1);
+}
+
+static bool bounds(const void *self, struct sr_light_bounds *b)
+{
+    const struct sr_light_area *m = self;
+    *b = (struct sr_light_bounds){.box = m->shape.model->bounds(m->shape.self, m->primitive), .cos_theta_e = 0, .two_sided = m->emission->two_sided,
+                                  .power = SR_PI * m->area * m->emission->choice_luminance * (m->emission->two_sided ? 2 : 1)};
+    m->shape.model->normals(m->shape.self, m->primitive, &b->axis, &b->cos_theta_o);
+    return true;
+}
+
+const struct sr_light_model sr_light_area = {
+    .name = "diffuse", .params = sr_light_emission_params, .size = sizeof(struct sr_light_area),
+    .sample = sample, .pdf = pdf, .Le = Le, .bounds = bounds, .power = power,
+};

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: MIT */
+/* For the files of this room: what emission means before it has a shape. */
+#ifndef SR_LIGHT_EMISSION_H
+#define SR_LIGHT_EMISSION_H
+
+#include "light/light.h"
+
+/* Makes s mean `luminance` [cd/m^2], or whatever its luminous integral stands for: luminous intensity, illuminance. Nothing
+ * given is the white of the colour space. Of an RGB emission only the white counts: rgb multiplies it. */
+sr_status sr_light_normalise(struct sr_spd *s, enum sr_colour_space_id space, float luminance, struct sr_error *error);
+
+/* The weight of s where lights are chosen: its luminous integral and a grain of its maximum, so that light that the eye
+ * hardly sees is found, too. */
+float sr_light_choice_weight(const struct sr_spd *s);
+
+/* All texels are numbers and there are three channels. */
+sr_status sr_light_check_texels(const struct sr_texels *t, const char *filename, struct sr_error *error);
+/* Mean luminance of the texels where white is 1 [1]. */
+double sr_light_mean_luminance(const struct sr_texels *t);
+
+/* Texel (x, y), nothing negative. */
+static inline struct sr_rgb sr_light_texel(const struct sr_texels *t, uint32_t x, uint32_t y)
+{
+    size_t i = ((size_t)y * t->width + x) * t->channels;
+    size_t g = t->channels >= 3 ? 1 : 0, b = t->channels >= 3 ? 2 : 0;
+    struct sr_rgb c = t->bytes ? (struct sr_rgb){t->decode[t->bytes[i]], t->decode[t->bytes[i + g]], t->decode[t->bytes[i + b]]}
+                               : (struct sr_rgb){t->floats[i], t->floats[i + g], t->floats[i + b]};
+    return (struct sr_rgb){fmaxf(c.r, 0), fmaxf(c.g, 0), fmaxf(c.b, 0)};
+}
+
+/* For lights that no ray meets. */
+float sr_light_delta_pdf(const void *self, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there);
+sr_spectrum sr_light_delta_Le(const void *self, const struct sr_point *there, sr_vec3 w, const struct sr_wavelengths *wavelengths);
+
+#endif

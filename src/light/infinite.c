@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: MIT */
+/* The sky: light from all directions outside the scene, uniform or as an image says.
+ *
+ *     uniform:  L(w) = L                                  E = pi L              [lx], of the hemisphere
+ *     image:    L(w) = rgb(square(w)) * white * scale     p(w) = p(square(w)) / (4 pi)      [1/sr]
+ *
+ * The image is an equal-area octahedral map (Clarberg 2008), looked up without interpolation as pbrt-v4 does, so that its
+ * texels are exactly the cells of the density. With `illuminance` the brightness is scaled so that a surface that faces the
+ * light's +z receives scale * illuminance.
+ *
+ * The density is compensated for the directions that surfaces choose themselves (Karlik, Sik, Vevoda, Skrivan, Krivanek,
+ * "MIS compensation", 2019): p ~ max(f - mean(f), 0); where it is 0 light still comes, found with weight 1 by the surface's
+ * own choice. A uniform sky is never drawn at all, for the same reason. Estimators without such a choice must not use it. */
+#include "light/emission.h"
+
+struct infinite {
+    struct sr_light_common common;
+    struct sr_spd L;
+    float scale, illuminance; // [1] [lx]
+    const char *filename;
+    // derived
+    float factor;                     // of the texels' illuminant spectra
+    struct sr_piecewise2 density;     // over the square
+    float to_light[3][3];             // world to light
+    sr_vec3 columns[3];               // light to world
+    float determinant;                // of to_light: a transform that is no rotation squeezes solid angles
+    float luminance, choice;          // [cd/m^2] mean over the sphere
+    float radius;                     // of the scene [m]
+};
+
+static const struct sr_param params[] = {
+    {SR_PARAM_ILLUMINANT, "L", "cd/m^2", 0, INFINITY, NAN, offsetof(struct infinite, L), "radiance; only its shape counts, rgb its brightness, too"},
+    {SR_PARAM_FLOAT, "scale", "1", 0, INFINITY, 1, offsetof(struct infinite, scale), "factor"},
+    {SR_PARAM_FLOAT, "illuminance", "lx", -INFINITY, INFINITY, NAN, offsetof(struct infinite, illuminance), "of a surface that faces the light's +z, if above 0"},
+    {SR_PARAM_FILE, "filename", "1", 0, 0, 0, offsetof(struct infinite, filename), "square image: equal-area octahedral map"},
+    {.name = NULL},
+};
+
+static bool is_image(const struct infinite *m)
+{
+    return m->common.texels.width > 0;
+}
+
+static void set_directions(struct infinite *m)
+{
+    const struct sr_transform *t = &m->common.light_to_world;
+    const float(*a)[3] = (const float(*)[3])m->to_light;
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j)
+            m->to_light[i][j] = t->inverse[i][j];
+        m->columns[i] = (sr_vec3){t->m[0][i], t->m[1][i], t->m[2][i]};
+    }
+    m->determinant = fabsf(a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
+                           a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]));
+}
+
+// illuminance on the side of +z, were the factor 1 [lx]
+static double upper_illuminance(const struct sr_texels *t)
+{
+    const double *y_of_rgb = sr_colour_space(t->space)->xyz_from_rgb[1];
+    double sum = 0;
+    for (uint32_t y = 0; y < t->height; ++y)
+        for (uint32_t x = 0; x < t->width; ++x) {
+            sr_vec2 p = {((float)x + 0.5f) / (float)t->width, ((float)y + 0.5f) / (float)t->height};
+            float cos_theta = sr_equal_area_square_to_sphere(p).z;
+            struct sr_rgb c = sr_light_texel(t, x, y);
+            if (cos_theta > 0)
+                sum += (double)cos_theta * (y_of_rgb[0] * (double)c.r + y_of_rgb[1] * (double)c.g + y_of_rgb[2] * (double)c.b);
+        }
+    return sum * 4 * (double)SR_PI / ((double)t->width * t->height);
+}
+
+static sr_status build_density(struct infinite *m, struct sr_arena *arena, struct sr_error *error)
+{
+    const struct sr_texels *t = &m->common.texels;
+    size_t n = (size_t)t->width * t->height;
+    float *f = sr_alloc(n * sizeof *f);
+    if (!f)
+        return sr_fail(error, SR_ERROR_RESOURCE, "no memory for the density of %s", m->filename);
+    double sum = 0, max = 0;
+    for (size_t i = 0; i < n; ++i) {
+        struct sr_rgb c = sr_light_texel(t, (uint32_t)(i % t->width), (uint32_t)(i / t->width));
+        f[i] = (c.r + c.g + c.b) / 3;
+        sum += (double)f[i];
+        max = fmax(max, (double)f[i]);
+    }
+    // what hardly rises above its mean would leave rounding errors: then the plain density
+    float mean = (float)(sum / (double)n);
+    m->choice = m->factor * mean;
+    if (max > 1.001 * (double)mean)
+        for (size_t i = 0; i < n; ++i)
+            f[i] = fmaxf(f[i] - mean, 0);
+    bool is_built = sr_piecewise2_build(arena, f, t->width, t->height, &m->density);
+    sr_free(f);
+    return is_built ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "no memory for the density of %s", m->filename);
+}
+
+static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *error)
+{
+    struct infinite *m = self;
+    const struct sr_texels *t = &m->common.texels;
+    set_directions(m);
+    if (!is_image(m)) {
+        float luminance = m->scale * (m->illuminance > 0 ? m->illuminance * SR_INV_PI : 1);
+        if (sr_light_normalise(&m->L, m->common.space, luminance, error))
+            return error->status;
+        m->luminance = (float)sr_spd_luminous_integral(&m->L);
+        return SR_OK;
+    }
+    if (m->L.kind != SR_SPD_NONE)
+        return sr_fail(error, SR_ERROR_INPUT, "an infinite light takes \"L\" or \"filename\" (%s), not both", m->filename);
+    if (t->width != t->height)
+        return sr_fail(error, SR_ERROR_INPUT, "%s: an environment image must be square, an equal-area octahedral map, but is %u x %u; "
+                       "convert latitude-longitude maps first", m->filename, t->width, t->height);
+    if (sr_light_check_texels(t, m->filename, error))
+        return error->status;
+    double factor = (double)m->scale / sr_colour_space(t->space)->illuminant_luminous_integral;
+    if (m->illuminance > 0) {
+        double given = upper_illuminance(t);
+        if (!(given > 0))
+            return sr_fail(error, SR_ERROR_INPUT, "%s: no light from above, so that it cannot be scaled to an illuminance", m->filename);
+        factor *= (double)m->illuminance / given;
+    }
+    m->factor = (float)factor;
+    m->luminance = (float)(factor * sr_colour_space(t->space)->illuminant_luminous_integral * sr_light_mean_luminance(t));
+    return build_density(m, arena, error);
+}
+
+static void place(void *self, sr_vec3 scene_centre, float scene_radius)
+{
+    (void)scene_centre;
+    ((struct infinite *)self)->radius = scene_radius;
+}
+
+// direction in the world to the square; *jacobian: solid angle of the image over that of the world
+static sr_vec2 square(const struct infinite *m, sr_vec3 wi, float *jacobian)
+{
+    const float(*a)[3] = (const float(*)[3])m->to_light;
+    sr_vec3 d = {a[0][0] * wi.x + a[0][1] * wi.y + a[0][2] * wi.z, a[1][0] * wi.x + a[1][1] * wi.y + a[1][2] * wi.z,
+                 a[2][0] * wi.x + a[2][1] * wi.y + a[2][2] * wi.z};
+    float inverse_length = 1 / sr_length(d);
+    *jacobian = m->determinant * inverse_length * inverse_length * inverse_length;
+    return sr_equal_area_sphere_to_square(sr_scale(inverse_length, d));
+}
+
+static uint32_t texel_index(float u, uint32_t n)
+{
+    float i = u * (float)n;
+    return i > 0 ? (uint32_t)fminf(i, (float)(n - 1)) : 0;
+}
+
+static sr_spectrum image_Le(const struct infinite *m, sr_vec2 p, const struct sr_wavelengths *w)
+{
+    const struct sr_texels *t = &m->common.texels;
+    struct sr_rgb c = sr_light_texel(t, texel_index(p.x, t->width), texel_index(p.y, t->height));
+    if (c.r + c.g + c.b <= 0)
+        return SR_BLACK;
+    struct sr_spd s = sr_spd_from_rgb_illuminant(t->space, c);
+    return sr_spd_eval(&s, w->lambda) * m->factor;
+}
+
+static sr_spectrum Le(const void *self, const struct sr_point *there, sr_vec3 w, const struct sr_wavelengths *wavelengths)
+{
+    (void)there;
+    const struct infinite *m = self;
+    if (!is_image(m))
+        return sr_spd_eval(&m->L, wavelengths->lambda);
+    float jacobian;
+    return image_Le(m, square(m, sr_neg(w), &jacobian), wavelengths);
+}
+
+static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
+{
+    (void)reference;
+    const struct infinite *m = self;
+    if (!is_image(m))
+        return false;
+    float pdf;
+    sr_vec2 p = sr_piecewise2_sample(&m->density, u, &pdf);
+    if (!(pdf > 0))
+        return false;
+    sr_vec3 d = sr_equal_area_square_to_sphere(p);
+    sr_vec3 wi = sr_add(sr_add(sr_scale(d.x, m->columns[0]), sr_scale(d.y, m->columns[1])), sr_scale(d.z, m->columns[2]));
+    // |A d| = 1 / |A^-1 wi| for the unit vector wi along A d
+    float length = sr_length(wi);
+    float jacobian = m->determinant * length * length * length;
+    *s = (struct sr_light_sample){.L = image_Le(m, p, w), .wi = sr_scale(1 / length, wi), .distance = INFINITY,
+                                  .pdf = pdf * jacobian / (4 * SR_PI)};
+    return !sr_spectrum_is_black(s->L);
+}
+
+static float pdf(const void *self, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there)
+{
+    (void)reference, (void)there;
+    const struct infinite *m = self;
+    if (!is_image(m))
+        return 0;
+    float jacobian;
+    sr_vec2 p = square(m, wi, &jacobian);
+    return sr_piecewise2_pdf(&m->density, p) * jacobian / (4 * SR_PI);
+}
+
+static float power(const void *self)
+{
+    const struct infinite *m = self;
+    return is_image(m) ? 4 * SR_PI * SR_PI * m->radius * m->radius * m->luminance : 0;
+}
+
+static bool bounds(const void *self, struct sr_light_bounds *b)
+{
+    const struct infinite *m = self;
+    float radius = m->radius > 0 ? m->radius : 1; // a scene without extent is lit, too
+    *b = (struct sr_light_bounds){.power = is_image(m) ? 4 * SR_PI * SR_PI * radius * radius * fmaxf(m->luminance, m->choice) : 0};
+    return false;
+}
+
+const struct sr_light_model sr_light_infinite = {
+    .name = "infinite", .params = params, .size = sizeof(struct infinite), .is_infinite = true, .prepare = prepare,
+    .place = place, .sample = sample, .pdf = pdf, .Le = Le, .bounds = bounds, .power = power,
+};

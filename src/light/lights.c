@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: MIT */
+/* Choosing one light among many: by the tree, by power alone, or evenly.
+ *
+ *     estimate = L / (pmf pdf)
+ *
+ * With the tree, infinite lights that can be drawn (images, distant lights) have the share 1 / (n + 1) each, the tree the rest.
+ * Only lights with power are chosen; where there is but one, it is chosen always. */
+#include "light/tree.h"
+
+#include <string.h>
+
+#define NEVER UINT32_MAX      // place of a light that is not chosen
+#define INFINITE (UINT32_MAX - 1) // of one that is, outside the tree
+
+struct choice {
+    struct sr_light_tree tree;
+    struct sr_alias alias;     // power: over all lights
+    const uint32_t *place;     // of each light: in the tree, NEVER or INFINITE
+    const uint32_t *choosable; // uniform: those with power
+    uint32_t choosable_count;
+    const uint32_t *outside;   // tree: infinite lights with power
+    uint32_t outside_count;
+    float share;               // tree: of each of those, and of the tree
+};
+
+static float power_of(struct sr_light light)
+{
+    struct sr_light_bounds b;
+    light.model->bounds(light.self, &b);
+    return b.power > 0 && isfinite(b.power) ? b.power : 0;
+}
+
+static sr_status build_choice(struct sr_arena *arena, struct sr_lights *l, struct sr_error *error)
+{
+    uint32_t n = l->count, infinite_count = 0;
+    struct choice *c = sr_arena_alloc(arena, sizeof *c);
+    uint32_t *place = sr_arena_alloc(arena, n * sizeof *place);
+    uint32_t *choosable = sr_alloc(n * sizeof *choosable), *outside = sr_alloc(n * sizeof *outside), *infinite = sr_alloc(n * sizeof *infinite);
+    float *weights = sr_alloc(n * sizeof *weights);
+    bool is_built = c && place && choosable && outside && infinite && weights;
+    for (uint32_t i = 0; is_built && i < n; ++i) {
+        const struct sr_light_model *model = l->lights[i].model;
+        weights[i] = power_of(l->lights[i]);
+        place[i] = weights[i] > 0 ? INFINITE : NEVER;
+        if (model->is_infinite && !model->is_delta)
+            infinite[infinite_count++] = i;
+        if (model->is_infinite && weights[i] > 0)
+            outside[c->outside_count++] = i;
+        if (weights[i] > 0)
+            choosable[c->choosable_count++] = i;
+    }
+    if (is_built) {
+        c->place = place;
+        c->outside = sr_arena_copy(arena, outside, c->outside_count * sizeof *outside);
+        l->infinite = sr_arena_copy(arena, infinite, infinite_count * sizeof *infinite);
+        l->infinite_count = infinite_count;
+        c->choosable = l->choice == SR_LIGHTS_UNIFORM || c->choosable_count == 1
+                           ? sr_arena_copy(arena, choosable, c->choosable_count * sizeof *choosable) : NULL;
+        is_built = c->outside && l->infinite && (c->choosable || (l->choice != SR_LIGHTS_UNIFORM && c->choosable_count != 1));
+    }
+    if (is_built && l->choice == SR_LIGHTS_POWER && c->choosable_count > 1)
+        is_built = sr_alias_build(arena, weights, n, &c->alias);
+    sr_free(choosable);
+    sr_free(outside);
+    sr_free(infinite);
+    sr_free(weights);
+    if (!is_built)
+        return sr_fail(error, SR_ERROR_RESOURCE, "no memory to choose among %u lights", n);
+    l->tree = c;
+    bool has_finite = c->choosable_count > c->outside_count;
+    c->share = 1 / (float)(c->outside_count + (has_finite ? 1 : 0));
+    return l->choice == SR_LIGHTS_BVH && has_finite ? sr_light_tree_build(arena, l->lights, n, &c->tree, place, error) : SR_OK;
+}
+
+sr_status sr_lights_build(struct sr_arena *arena, const struct sr_light *lights, uint32_t count, enum sr_light_choice choice,
+                          struct sr_lights *out, struct sr_error *error)
+{
+    *out = (struct sr_lights){.lights = lights, .count = count, .choice = choice};
+    return count ? build_choice(arena, out, error) : SR_OK;
+}
+
+/* The 24 bits of u do not suffice to reach each of a million lights with its probability: what is below them comes from a
+ * hash of u and the place. */
+static double with_more_bits(float u, sr_vec3 p)
+{
+    uint32_t bits[4];
+    memcpy(&bits[0], &u, 4);
+    memcpy(&bits[1], &p, 12);
+    uint32_t hash = sr_hash_combine(bits[0] ^ (bits[1] * 0x85ebca6bu), bits[2] ^ (bits[3] * 0xc2b2ae35u));
+    return (double)u + ((double)hash + 0.5) * 0x1p-56;
+}
+
+bool sr_lights_pick(const struct sr_lights *lights, const struct sr_point *x, float u, uint32_t *index, float *pmf)
+{
+    const struct choice *c = lights->tree;
+    if (!c || c->choosable_count == 0)
+        return false;
+    *pmf = 1;
+    if (c->choosable_count == 1) {
+        *index = c->choosable[0];
+        return true;
+    }
+    if (lights->choice == SR_LIGHTS_UNIFORM) {
+        uint32_t i = (uint32_t)(with_more_bits(u, x->p) * c->choosable_count);
+        *index = c->choosable[i < c->choosable_count ? i : c->choosable_count - 1];
+        *pmf = 1 / (float)c->choosable_count;
+        return true;
+    }
+    if (lights->choice == SR_LIGHTS_POWER) {
+        *index = sr_alias_sample(&c->alias, u, pmf, NULL);
+        return *pmf > 0;
+    }
+    double v = with_more_bits(u, x->p);
+    if (c->outside_count) {
+        v /= (double)c->share;
+        uint32_t i = (uint32_t)v;
+        if (i < c->outside_count || !c->tree.nodes) {
+            *index = c->outside[i < c->outside_count ? i : c->outside_count - 1];
+            *pmf = c->share;
+            return true;
+        }
+        v = fmin(v - (double)c->outside_count, 0x1.fffffffffffffp-1);
+    }
+    if (!sr_light_tree_pick(&c->tree, x->p, x->ns, v, index, pmf))
+        return false;
+    *pmf *= c->share;
+    return true;
+}
+
+float sr_lights_pmf(const struct sr_lights *lights, const struct sr_point *x, uint32_t index)
+{
+    const struct choice *c = lights->tree;
+    if (!c || c->place[index] == NEVER)
+        return 0;
+    if (c->choosable_count == 1)
+        return 1;
+    if (lights->choice == SR_LIGHTS_UNIFORM)
+        return 1 / (float)c->choosable_count;
+    if (lights->choice == SR_LIGHTS_POWER)
+        return c->alias.pmf[index];
+    return c->place[index] == INFINITE ? c->share : c->share * sr_light_tree_pmf(&c->tree, x->p, x->ns, c->place[index]);
+}

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: MIT */
+/* A point that shines into a cone, with a soft rim.
+ *
+ *     I(theta) = I0 S((cos_theta - cos_total) / (cos_start - cos_total)),   S(t) = t^2 (3 - 2 t) on [0, 1]   [cd]
+ *     Phi      = 2 pi I0 ((1 - cos_start) + (cos_start - cos_total) / 2)                                      [lm]
+ *
+ * total = coneangle, start = coneangle - conedeltaangle. The rim is smooth in the cosine, not in the angle (as pbrt-v4); S has
+ * the mean 1/2, hence Phi. I0 is scaled to the luminous intensity `scale`, or so that Phi = scale * power.
+ * Limits: a transform that is no similarity turns the axis but leaves the cone round. */
+#include "light/emission.h"
+
+struct spot {
+    struct sr_light_common common;
+    struct sr_spd I;
+    float scale, power, coneangle, conedeltaangle; // [1] [lm] [deg] [deg]
+    sr_vec3 from, to;
+    sr_vec3 p, p_error, axis;        // derived [m] [m] [1]
+    float start, total;              // [rad]
+    float cos_start, cos_total;
+    float luminous, choice;          // [cd]
+};
+
+static const struct sr_param params[] = {
+    {SR_PARAM_ILLUMINANT, "I", "cd", 0, INFINITY, NAN, offsetof(struct spot, I), "intensity on the axis; only its shape counts, rgb its brightness, too"},
+    {SR_PARAM_FLOAT, "scale", "1", 0, INFINITY, 1, offsetof(struct spot, scale), "factor"},
+    {SR_PARAM_FLOAT, "power", "lm", -INFINITY, INFINITY, NAN, offsetof(struct spot, power), "luminous flux of the whole light, if above 0"},
+    {SR_PARAM_FLOAT, "coneangle", "deg", 0, 180, 30, offsetof(struct spot, coneangle), "from the axis to where the light ends"},
+    {SR_PARAM_FLOAT, "conedeltaangle", "deg", 0, 180, 5, offsetof(struct spot, conedeltaangle), "width of the rim inside it"},
+    {SR_PARAM_POINT3, "from", "m", -INFINITY, INFINITY, 0, offsetof(struct spot, from), "where it is"},
+    {SR_PARAM_POINT3, "to", "m", -INFINITY, INFINITY, NAN, offsetof(struct spot, to), "a point on its axis; (0, 0, 1) if not given"},
+    {.name = NULL},
+};
+
+// flux over intensity on the axis [sr]
+static float solid_angle(const struct spot *m)
+{
+    return 2 * SR_PI * ((1 - m->cos_start) + (m->cos_start - m->cos_total) / 2);
+}
+
+static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *error)
+{
+    (void)arena;
+    struct spot *m = self;
+    if (isnan(m->to.x))
+        m->to = (sr_vec3){0, 0, 1};
+    m->total = sr_radians(m->coneangle);
+    m->start = sr_radians(fmaxf(m->coneangle - m->conedeltaangle, 0));
+    m->cos_start = cosf(m->start);
+    m->cos_total = cosf(m->total);
+    sr_vec3 axis = sr_transform_vector(&m->common.light_to_world, sr_sub(m->to, m->from));
+    m->p = sr_transform_point_error(&m->common.light_to_world, m->from, (sr_vec3){0, 0, 0}, &m->p_error);
+    if (!sr_is_finite(m->p) || !(sr_length2(axis) > 0))
+        return sr_fail(error, SR_ERROR_INPUT, "a spot light needs two different points \"from\" and \"to\"");
+    m->axis = sr_normalize(axis);
+    float angle = solid_angle(m);
+    if (m->power > 0 && !(angle > 0))
+        return sr_fail(error, SR_ERROR_INPUT, "a spot light with \"power\" needs a cone wider than %g deg", (double)m->coneangle);
+    float intensity = m->scale * (m->power > 0 ? m->power / angle : 1);
+    if (sr_light_normalise(&m->I, m->common.space, intensity, error))
+        return error->status;
+    m->luminous = (float)sr_spd_luminous_integral(&m->I);
+    m->choice = sr_light_choice_weight(&m->I);
+    return SR_OK;
+}
+
+static float falloff(const struct spot *m, float cos_theta)
+{
+    if (cos_theta >= m->cos_start)
+        return 1;
+    if (cos_theta <= m->cos_total)
+        return 0;
+    float t = (cos_theta - m->cos_total) / (m->cos_start - m->cos_total);
+    return t * t * (3 - 2 * t);
+}
+
+static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
+{
+    (void)u;
+    const struct spot *m = self;
+    sr_vec3 d = sr_sub(m->p, reference->p);
+    float r2 = sr_length2(d), r = sqrtf(r2);
+    if (!(r2 > 0))
+        return false;
+    sr_vec3 wi = sr_scale(1 / r, d);
+    float share = falloff(m, -sr_dot(wi, m->axis));
+    if (share <= 0)
+        return false;
+    *s = (struct sr_light_sample){.L = sr_spd_eval(&m->I, w->lambda) * (share / r2), .wi = wi, .distance = r,
+                                  .p = m->p, .p_error = m->p_error, .pdf = 1, .is_delta = true};
+    return true;
+}
+
+static float power(const void *self)
+{
+    const struct spot *m = self;
+    return m->luminous * solid_angle(m);
+}
+
+// the tree compares intensities, so power is that of a point light as bright as the axis
+static bool bounds(const void *self, struct sr_light_bounds *b)
+{
+    const struct spot *m = self;
+    *b = (struct sr_light_bounds){.box = {m->p, m->p}, .axis = m->axis, .cos_theta_o = m->cos_start,
+                                  .cos_theta_e = cosf(fminf(m->total - m->start, SR_PI)),
+                                  .power = solid_angle(m) > 0 ? 4 * SR_PI * m->choice : 0};
+    return true;
+}
+
+const struct sr_light_model sr_light_spot = {
+    .name = "spot", .params = params, .size = sizeof(struct spot), .is_delta = true, .prepare = prepare,
+    .sample = sample, .pdf = sr_light_delta_pdf, .Le = sr_light_delta_Le, .bounds = bounds, .power = power,
+};

@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: MIT */
+/* Walking the tree of lights: at each node one of eight children is drawn in proportion to
+ *
+ *     power  cos(max(0, theta_w - theta_o - theta_b))  cos(max(0, theta_i - theta_b)) / max(d^2, r^2)
+ *
+ * with d the distance of the child's sphere of radius r, theta_b the half angle under which the sphere is seen, theta_w the
+ * angle between the cone's axis and the direction to the receiver, theta_o the cone's half angle, theta_i the angle at the
+ * receiver's normal (either side). Where theta_w - theta_o - theta_b is beyond the reach theta_e, no light can come: 0.
+ * A. Conty Estevez, C. Kulla, Importance Sampling of Many Lights with Adaptive Tree Splitting, 2018; all eight at a time,
+ * with sines and cosines times d, so that one division is left.
+ * The probability of a light does not need the walk: it is the product over its ancestors.
+ * Limits: the bounds are conservative, so a walk may end at a node none of whose children can contribute. */
+#include "light/tree.h"
+
+#define WIDTH SR_LIGHT_TREE_WIDTH
+
+typedef float v8 __attribute__((vector_size(32)));
+typedef int32_t v8i __attribute__((vector_size(32)));
+typedef int16_t v8s __attribute__((vector_size(16)));
+typedef uint16_t v8u __attribute__((vector_size(16)));
+
+// what rounding may take from a cosine; and the least weight of a child that may contribute, for the sake of spread normals
+static const float slack = 2e-3f, least = 0.02f;
+
+static inline v8 select(v8i mask, v8 a, v8 b)
+{
+    return (v8)((mask & (v8i)a) | (~mask & (v8i)b));
+}
+
+static inline v8 root(v8 a)
+{
+    v8 r = a;
+    for (int i = 0; i < WIDTH; ++i)
+        r[i] = sqrtf(a[i]);
+    return r;
+}
+
+static inline v8 larger(v8 a, v8 b)
+{
+    return select(a > b, a, b);
+}
+
+static inline v8 magnitude(v8 a)
+{
+    return (v8)((v8i)a & 0x7fffffff);
+}
+
+static inline v8 from_u16(const uint16_t *p)
+{
+    v8u a;
+    __builtin_memcpy(&a, p, sizeof a);
+    return __builtin_convertvector(__builtin_convertvector(a, v8i), v8);
+}
+
+static inline v8 from_s16(const int16_t *p)
+{
+    v8s a;
+    __builtin_memcpy(&a, p, sizeof a);
+    return __builtin_convertvector(__builtin_convertvector(a, v8i), v8) * (1 / 32767.0f);
+}
+
+static inline v8 load(const float *p)
+{
+    v8 a;
+    __builtin_memcpy(&a, p, sizeof a);
+    return a;
+}
+
+// cos(max(0, a - b)) times d^2, given d cos a, d sin a, d cos b, d sin b
+static inline v8 cosine_of_rest(v8 cos_a, v8 sin_a, v8 cos_b, v8 sin_b, v8 d2)
+{
+    return select(sin_a * cos_b - cos_a * sin_b <= 0, d2, cos_a * cos_b + sin_a * sin_b);
+}
+
+static inline v8 importance(const struct sr_light_tree_node *b, sr_vec3 p, sr_vec3 ns, bool has_normal)
+{
+    const v8 zero = {0};
+    // from the centres to the receiver
+    v8 dx = (p.x - b->origin.x) - b->step * from_u16(b->centre[0]);
+    v8 dy = (p.y - b->origin.y) - b->step * from_u16(b->centre[1]);
+    v8 dz = (p.z - b->origin.z) - b->step * from_u16(b->centre[2]);
+    v8 d2 = dx * dx + dy * dy + dz * dz;
+    v8 power = load(b->power), r = load(b->radius);
+    v8i is_inside = d2 <= r * r;
+    v8 reach2 = larger(d2, r * r + 1e-18f);
+    v8 cos_b = root(larger(d2 - r * r, zero)); // times d, like all that follow
+
+    v8 cos_o = from_s16(b->cos_o), cos_e = from_s16(b->cos_e);
+    v8 sin_o = root(larger(1 - cos_o * cos_o, zero));
+    v8 cos_w = from_s16(b->axis[0]) * dx + from_s16(b->axis[1]) * dy + from_s16(b->axis[2]) * dz;
+    cos_w = select(power < 0, magnitude(cos_w), cos_w);
+    v8 sin_w = root(larger(d2 - cos_w * cos_w, zero));
+
+    v8 cos_x = cos_w * cos_o + sin_w * sin_o;
+    v8 sin_x = sin_w * cos_o - cos_w * sin_o;
+    v8 emitted = cosine_of_rest(cos_x, sin_x, cos_b, r, d2);
+    emitted = select((sin_x <= 0) | is_inside, reach2, emitted);
+    v8i can_reach = emitted >= (cos_e - slack) * reach2;
+
+    v8 inverse = 1 / reach2;
+    v8 weight = magnitude(power) * inverse * larger(emitted * inverse, zero + least);
+    if (has_normal) {
+        v8 cos_i = magnitude(ns.x * dx + ns.y * dy + ns.z * dz);
+        v8 sin_i = root(larger(d2 - cos_i * cos_i, zero));
+        v8 received = select(is_inside, reach2, cosine_of_rest(cos_i, sin_i, cos_b, r, d2));
+        weight *= larger(received * inverse, zero + least);
+    }
+    return select(can_reach, weight, zero);
+}
+
+// the sums of a binary tree over the eight weights: the order of additions is the same for pick and pmf
+struct sums {
+    float one[8], two[4], four[2], all;
+};
+
+static inline struct sums add_up(v8 w)
+{
+    struct sums s;
+    for (int i = 0; i < 8; ++i)
+        s.one[i] = w[i];
+    for (int i = 0; i < 4; ++i)
+        s.two[i] = s.one[2 * i] + s.one[2 * i + 1];
+    s.four[0] = s.two[0] + s.two[1];
+    s.four[1] = s.two[2] + s.two[3];
+    s.all = s.four[0] + s.four[1];
+    return s;
+}
+
+static bool has_length(sr_vec3 n)
+{
+    return (n.x != 0) | (n.y != 0) | (n.z != 0);
+}
+
+bool sr_light_tree_pick(const struct sr_light_tree *tree, sr_vec3 p, sr_vec3 ns, double u, uint32_t *index, float *pmf)
+{
+    bool has_normal = has_length(ns);
+    float probability = 1;
+    uint32_t at = 0;
+    do {
+        const struct sr_light_tree_node *node = &tree->nodes[at];
+        struct sums s = add_up(importance(node, p, ns, has_normal));
+        if (!(s.all > 0))
+            return false;
+        // down the sums without branches: which half, which quarter, which one
+        double t = u * (double)s.all;
+        unsigned half = t >= (double)s.four[0];
+        t -= half * (double)s.four[0];
+        unsigned i = 2 * half, is_second = t >= (double)s.two[i];
+        t -= is_second * (double)s.two[i];
+        i = 2 * (i + is_second);
+        is_second = t >= (double)s.one[i];
+        t -= is_second * (double)s.one[i];
+        i += is_second;
+        while (SR_UNLIKELY(!(s.one[i] > 0))) // rounding led past the last of its half
+            i = (i + 7) % 8;
+        u = t / (double)s.one[i];
+        u = u < 0 ? 0 : u < 0x1.fffffffffffffp-1 ? u : 0x1.fffffffffffffp-1;
+        probability *= s.one[i] / s.all;
+        at = node->child[i];
+    } while (!(at & SR_LIGHT_TREE_LEAF));
+    *index = at & ~SR_LIGHT_TREE_LEAF;
+    *pmf = probability;
+    return probability > 0;
+}
+
+float sr_light_tree_pmf(const struct sr_light_tree *tree, sr_vec3 p, sr_vec3 ns, uint32_t place)
+{
+    bool has_normal = has_length(ns);
+    float probability = 1;
+    while (place != SR_LIGHT_TREE_NOWHERE) {
+        const struct sr_light_tree_node *node = &tree->nodes[place / WIDTH];
+        struct sums s = add_up(importance(node, p, ns, has_normal));
+        if (!(s.one[place % WIDTH] > 0))
+            return 0;
+        probability *= s.one[place % WIDTH] / s.all;
+        place = node->parent;
+    }
+    return probability;
+}
