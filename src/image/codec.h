@@ -9,26 +9,27 @@
 struct sr_image_source {
     const char *label; // path, for messages
     const uint8_t *data;
-    size_t size; // [B]
+    size_t size;                     // [B]
     enum sr_image_encoding encoding; // what whole numbers mean
 };
 
 struct sr_image_codec {
     const char *name;
-    const char *endings[4]; // ".jpg", … ended by NULL
+    const char *endings[4];                            // ".jpg", … ended by NULL
     bool (*is_mine)(const uint8_t *data, size_t size); // by the first bytes; NULL: the ending decides
     sr_status (*decode)(const struct sr_image_source *source, struct sr_image **image, struct sr_error *error);
     /* Appends to `out` (bytes). NULL: this format is only read. */
-    sr_status (*encode)(const struct sr_image *image, const struct sr_image_write_options *options, struct sr_array *out,
-                        struct sr_error *error);
+    sr_status (*encode)(const struct sr_image *image, const struct sr_image_write_options *options,
+                        struct sr_array *out, struct sr_error *error);
 };
 
-extern const struct sr_image_codec sr_image_codec_exr, sr_image_codec_png, sr_image_codec_jpeg, sr_image_codec_tga, sr_image_codec_pfm,
-    sr_image_codec_hdr;
+extern const struct sr_image_codec sr_image_codec_exr, sr_image_codec_png, sr_image_codec_jpeg, sr_image_codec_tga,
+    sr_image_codec_pfm, sr_image_codec_hdr;
 
 /* sr_image_create, but first refuses what the size of the file cannot back. */
-sr_status sr_image_create_for(const struct sr_image_source *source, uint64_t width, uint64_t height, uint32_t channel_count,
-                              const char *const *names, enum sr_image_type type, struct sr_image **image, struct sr_error *error);
+sr_status sr_image_create_for(const struct sr_image_source *source, uint64_t width, uint64_t height,
+                              uint32_t channel_count, const char *const *names, enum sr_image_type type,
+                              struct sr_image **image, struct sr_error *error);
 bool sr_image_put(struct sr_array *out, const void *bytes, size_t size);
 /* Value [unit] of element i (pixel * channel_count + channel) of an image of either type. */
 float sr_image_value(const struct sr_image *image, size_t i, uint32_t channel);

@@ -4,9 +4,9 @@
  *     d = a - b,   RMSE = sqrt(<d^2>) [unit],   relMSE = < d^2 / (b^2 + 0.01 <b>^2) > [1]
  *     z = d / sqrt(SE_a^2 + SE_b^2) [1],        z of the mean = sum d / sqrt(sum (SE_a^2 + SE_b^2))
  *
- * over the n pixels where both are finite. Where the two images estimate the same thing and tell their errors rightly, z is
- * standard normal; many samples a pixel make it so (central limit), fireflies do not. Limits: the z of the mean takes the
- * pixels as independent, which a wide reconstruction filter breaks. */
+ * over the n pixels where both are finite. Where the two images estimate the same thing and tell their errors
+ * rightly, z is standard normal; many samples a pixel make it so (central limit), fireflies do not. Limits: the z
+ * of the mean takes the pixels as independent, which a wide reconstruction filter breaks. */
 #include "image/codec.h"
 
 #include <math.h>
@@ -45,7 +45,8 @@ struct sums {
     uint64_t above[3]; // |z| > 2, 3, 4
 };
 
-static void add_pixel(struct sr_image_difference *r, struct sums *s, double a, double b, double variance, uint32_t x, uint32_t y)
+static void add_pixel(struct sr_image_difference *r, struct sums *s, double a, double b, double variance, uint32_t x,
+                      uint32_t y)
 {
     double d = a - b;
     r->count++;
@@ -70,11 +71,13 @@ static void add_pixel(struct sr_image_difference *r, struct sums *s, double a, d
     r->max_z = fmax(r->max_z, fabs(z));
 }
 
-static double rel_mse(const struct sr_image *a, const struct sr_image *b, uint32_t ca, uint32_t cb, double mean_b, uint64_t count)
+static double rel_mse(const struct sr_image *a, const struct sr_image *b, uint32_t ca, uint32_t cb, double mean_b,
+                      uint64_t count)
 {
     double sum = 0, epsilon = 0.01 * mean_b * mean_b;
     for (size_t p = 0; p < (size_t)a->width * a->height; p++) {
-        double va = (double)sr_image_value(a, p * a->channel_count + ca, ca), vb = (double)sr_image_value(b, p * b->channel_count + cb, cb);
+        double va = (double)sr_image_value(a, p * a->channel_count + ca, ca),
+               vb = (double)sr_image_value(b, p * b->channel_count + cb, cb);
         double floor = vb * vb + epsilon;
         // two black images do not differ
         if (isfinite(va) && isfinite(vb) && va != vb)
@@ -83,7 +86,8 @@ static double rel_mse(const struct sr_image *a, const struct sr_image *b, uint32
     return count ? sum / (double)count : 0;
 }
 
-static void compare_channel(const struct sr_image *a, const struct sr_image *b, uint32_t ca, uint32_t cb, struct sr_image_difference *r)
+static void compare_channel(const struct sr_image *a, const struct sr_image *b, uint32_t ca, uint32_t cb,
+                            struct sr_image_difference *r)
 {
     memcpy(r->name, a->channels[ca].name, sizeof r->name);
     memcpy(r->unit, a->channels[ca].unit, sizeof r->unit);
@@ -122,8 +126,9 @@ static sr_status check_sizes(const struct sr_image *a, const struct sr_image *b,
 {
     if (a->width == b->width && a->height == b->height)
         return SR_OK;
-    return sr_fail(error, SR_ERROR_INPUT, "images of %u x %u and %u x %u pixels cannot be compared: the same size was expected", a->width, a->height,
-                   b->width, b->height);
+    return sr_fail(error, SR_ERROR_INPUT,
+                   "images of %u x %u and %u x %u pixels cannot be compared: the same size was expected", a->width,
+                   a->height, b->width, b->height);
 }
 
 sr_status sr_image_compare(const struct sr_image *a, const struct sr_image *b, struct sr_image_comparison *comparison,
@@ -149,7 +154,8 @@ sr_status sr_image_compare(const struct sr_image *a, const struct sr_image *b, s
     }
     if (comparison->channel_count == 0) {
         sr_image_comparison_free(comparison);
-        return sr_fail(error, SR_ERROR_INPUT, "the images have no channel of the same name: '%s' is the first of one, '%s' of the other",
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "the images have no channel of the same name: '%s' is the first of one, '%s' of the other",
                        a->channels[0].name, b->channels[0].name);
     }
     comparison->rmse = sqrt(sum_mse / comparison->channel_count);
@@ -214,8 +220,8 @@ static void paint(float d, double scale, uint8_t rgb[3])
         memcpy(rgb, (uint8_t[3]){0, 255, 0}, 3);
 }
 
-sr_status sr_image_difference_picture(const struct sr_image *a, const struct sr_image *b, double scale, struct sr_image **picture,
-                                      double *used_scale, struct sr_error *error)
+sr_status sr_image_difference_picture(const struct sr_image *a, const struct sr_image *b, double scale,
+                                      struct sr_image **picture, double *used_scale, struct sr_error *error)
 {
     *picture = NULL;
     sr_status status = check_sizes(a, b, error);

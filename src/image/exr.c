@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* OpenEXR through the OpenEXRCore C interface: read from memory and written to memory.
  *
- * "OpenEXR File Layout" of the OpenEXR project. The data window becomes a plain image, with (x0, y0) its place in the display
- * window. Half and uint samples become floats (uint above 2^24 loses its last digits). Written: float32 scan lines, ZIP, one
- * part, so that every bit of a float is kept. Limits: only the first part and level 0 are read; deep data and subsampled
- * channels are refused; names of channels beyond 63 bytes are cut. */
+ * "OpenEXR File Layout" of the OpenEXR project. The data window becomes a plain image, with (x0, y0) its place in
+ * the display window. Half and uint samples become floats (uint above 2^24 loses its last digits). Written: float32
+ * scan lines, ZIP, one part, so that every bit of a float is kept. Limits: only the first part and level 0 are
+ * read; deep data and subsampled channels are refused; names of channels beyond 63 bytes are cut. */
 #include "image/codec.h"
 
 #include <openexr.h>
@@ -34,7 +34,8 @@ static void on_error(exr_const_context_t context, exr_result_t code, const char 
         snprintf(job->message, sizeof job->message, "%s", text);
 }
 
-static int64_t take(exr_const_context_t context, void *user, void *buffer, uint64_t size, uint64_t offset, exr_stream_error_func_ptr_t fail)
+static int64_t take(exr_const_context_t context, void *user, void *buffer, uint64_t size, uint64_t offset,
+                    exr_stream_error_func_ptr_t fail)
 {
     const struct sr_image_source *source = ((struct job *)user)->source;
     (void)context;
@@ -52,7 +53,8 @@ static int64_t source_size(exr_const_context_t context, void *user)
     return (int64_t)((struct job *)user)->source->size;
 }
 
-static int64_t put(exr_const_context_t context, void *user, const void *buffer, uint64_t size, uint64_t offset, exr_stream_error_func_ptr_t fail)
+static int64_t put(exr_const_context_t context, void *user, const void *buffer, uint64_t size, uint64_t offset,
+                   exr_stream_error_func_ptr_t fail)
 {
     struct sr_array *out = ((struct job *)user)->out;
     if (offset > SIZE_MAX / 8 || size > SIZE_MAX / 8 || !sr_array_reserve(out, offset + size, 1)) {
@@ -113,7 +115,8 @@ static sr_status keep_attribute(struct sr_image *image, const exr_attribute_t *a
         text = a->uc == EXR_ENVMAP_CUBE ? "cube" : "latlong";
     else
         return SR_OK;
-    static const char *const structural[] = {"type", "pixelAspectRatio", "screenWindowWidth", "chunkCount", "version", "name"};
+    static const char *const structural[] = {"type",       "pixelAspectRatio", "screenWindowWidth",
+                                             "chunkCount", "version",          "name"};
     for (size_t i = 0; i < sizeof structural / sizeof *structural; i++)
         if (strcmp(a->name, structural[i]) == 0)
             return SR_OK;
@@ -153,7 +156,8 @@ struct chunks {
     exr_result_t (*decompress)(exr_decode_pipeline_t *);
 };
 
-/* A chunk that B44 could not make smaller is stored as it is; versions of the library up to 3.1 unpack it all the same. */
+/* A chunk that B44 could not make smaller is stored as it is; versions of the library up to 3.1 unpack it all the
+ * same. */
 static exr_result_t decompress_b44(exr_decode_pipeline_t *pipeline)
 {
     struct chunks *k = pipeline->decoding_user_data;
@@ -176,8 +180,8 @@ static exr_result_t decompress_b44(exr_decode_pipeline_t *pipeline)
 static exr_result_t read_chunk(struct chunks *k, const exr_chunk_info_t *info, uint32_t x, uint32_t y)
 {
     struct sr_image *image = k->image;
-    if (x >= image->width || y >= image->height || info->width <= 0 || info->height <= 0 || (uint32_t)info->width > image->width - x ||
-        (uint32_t)info->height > image->height - y)
+    if (x >= image->width || y >= image->height || info->width <= 0 || info->height <= 0 ||
+        (uint32_t)info->width > image->width - x || (uint32_t)info->height > image->height - y)
         return EXR_ERR_CORRUPT_CHUNK;
     exr_result_t result = k->is_started ? exr_decoding_update(k->exr, 0, info, &k->pipeline)
                                         : exr_decoding_initialize(k->exr, 0, info, &k->pipeline);
@@ -197,7 +201,8 @@ static exr_result_t read_chunk(struct chunks *k, const exr_chunk_info_t *info, u
     }
     if (is_first)
         result = exr_decoding_choose_default_routines(k->exr, 0, &k->pipeline);
-    if (is_first && k->pipeline.decompress_fn && (info->compression == EXR_COMPRESSION_B44 || info->compression == EXR_COMPRESSION_B44A)) {
+    if (is_first && k->pipeline.decompress_fn &&
+        (info->compression == EXR_COMPRESSION_B44 || info->compression == EXR_COMPRESSION_B44A)) {
         k->decompress = k->pipeline.decompress_fn;
         k->pipeline.decoding_user_data = k;
         k->pipeline.decompress_fn = decompress_b44;
@@ -229,7 +234,8 @@ static exr_result_t read_tiles(struct chunks *k)
     for (uint64_t y = 0; y < k->image->height && result == EXR_ERR_SUCCESS; y += (uint32_t)tile_height)
         for (uint64_t x = 0; x < k->image->width && result == EXR_ERR_SUCCESS; x += (uint32_t)tile_width) {
             exr_chunk_info_t info;
-            result = exr_read_tile_chunk_info(k->exr, 0, (int)(x / (uint32_t)tile_width), (int)(y / (uint32_t)tile_height), 0, 0, &info);
+            result = exr_read_tile_chunk_info(k->exr, 0, (int)(x / (uint32_t)tile_width),
+                                              (int)(y / (uint32_t)tile_height), 0, 0, &info);
             if (result == EXR_ERR_SUCCESS)
                 result = read_chunk(k, &info, (uint32_t)x, (uint32_t)y);
         }
@@ -255,14 +261,19 @@ static sr_status read_part(exr_context_t exr, struct job *job, struct sr_image *
     const exr_attr_chlist_t *list = NULL;
     exr_attr_box2i_t data, display;
     if (exr_get_storage(exr, 0, &storage) != EXR_ERR_SUCCESS || exr_get_channels(exr, 0, &list) != EXR_ERR_SUCCESS ||
-        exr_get_data_window(exr, 0, &data) != EXR_ERR_SUCCESS || exr_get_display_window(exr, 0, &display) != EXR_ERR_SUCCESS)
+        exr_get_data_window(exr, 0, &data) != EXR_ERR_SUCCESS ||
+        exr_get_display_window(exr, 0, &display) != EXR_ERR_SUCCESS)
         return sr_fail(error, SR_ERROR_INPUT, "%s: the EXR header is damaged: %s", label, job->message);
     int64_t width = (int64_t)data.max.x - data.min.x + 1, height = (int64_t)data.max.y - data.min.y + 1;
-    int64_t full_width = (int64_t)display.max.x - display.min.x + 1, full_height = (int64_t)display.max.y - display.min.y + 1;
+    int64_t full_width = (int64_t)display.max.x - display.min.x + 1,
+            full_height = (int64_t)display.max.y - display.min.y + 1;
     int64_t x0 = (int64_t)data.min.x - display.min.x, y0 = (int64_t)data.min.y - display.min.y;
-    if (width <= 0 || height <= 0 || full_width <= 0 || full_height <= 0 || x0 != (int32_t)x0 || y0 != (int32_t)y0 || full_width > UINT32_MAX ||
-        full_height > UINT32_MAX)
-        return sr_fail(error, SR_ERROR_INPUT, "%s: the EXR header has a data or display window that makes no sense", label);
+    // within 2^30, so that sums of a place and a size stay in 32 bits
+    const int64_t most = INT32_MAX / 2;
+    if (width <= 0 || height <= 0 || full_width <= 0 || full_height <= 0 || full_width > INT32_MAX ||
+        full_height > INT32_MAX || x0 < -most || x0 > most || y0 < -most || y0 > most)
+        return sr_fail(error, SR_ERROR_INPUT, "%s: the EXR header has a data or display window that makes no sense",
+                       label);
     const char *why = refusal(storage, list, (uint64_t)width);
     if (why)
         return sr_fail(error, SR_ERROR_INPUT, "%s: %s", label, why);
@@ -270,10 +281,12 @@ static sr_status read_part(exr_context_t exr, struct job *job, struct sr_image *
     uint32_t count = (uint32_t)list->num_channels;
     uint32_t *place = sr_arena_alloc(&scratch, count * sizeof *place);
     const char **names = sr_arena_alloc(&scratch, count * sizeof *names);
-    sr_status status = place && names ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory to read it", label);
+    sr_status status =
+        place && names ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory to read it", label);
     if (status == SR_OK) {
         order_channels(list, place, names);
-        status = sr_image_create_for(job->source, (uint64_t)width, (uint64_t)height, count, names, SR_IMAGE_FLOATS, image, error);
+        status = sr_image_create_for(job->source, (uint64_t)width, (uint64_t)height, count, names, SR_IMAGE_FLOATS,
+                                     image, error);
     }
     if (status == SR_OK) {
         (*image)->encoding = SR_IMAGE_LINEAR;
@@ -304,9 +317,11 @@ static sr_status decode(const struct sr_image_source *source, struct sr_image **
     init.size_fn = source_size;
     exr_context_t exr = NULL;
     exr_result_t result = exr_start_read(&exr, source->label, &init);
-    sr_status status = result == EXR_ERR_SUCCESS ? read_part(exr, &job, image, error)
-                                                 : sr_fail(error, SR_ERROR_INPUT, "%s: the EXR header is damaged or cut short: %s", source->label,
-                                                           job.message[0] ? job.message : exr_get_default_error_message(result));
+    sr_status status =
+        result == EXR_ERR_SUCCESS
+            ? read_part(exr, &job, image, error)
+            : sr_fail(error, SR_ERROR_INPUT, "%s: the EXR header is damaged or cut short: %s", source->label,
+                      job.message[0] ? job.message : exr_get_default_error_message(result));
     if (exr)
         exr_finish(&exr);
     if (status != SR_OK) {
@@ -322,18 +337,22 @@ static exr_result_t write_header(exr_context_t exr, const struct sr_image *image
 {
     int part = 0;
     exr_attr_v2f_t centre = {.x = 0, .y = 0};
-    exr_attr_box2i_t display = {.min = {.x = 0, .y = 0}, .max = {.x = (int32_t)image->full_width - 1, .y = (int32_t)image->full_height - 1}};
-    exr_attr_box2i_t data = {.min = {.x = image->x0, .y = image->y0},
-                             .max = {.x = image->x0 + (int32_t)image->width - 1, .y = image->y0 + (int32_t)image->height - 1}};
+    exr_attr_box2i_t display = {.min = {.x = 0, .y = 0},
+                                .max = {.x = (int32_t)image->full_width - 1, .y = (int32_t)image->full_height - 1}};
+    exr_attr_box2i_t data = {
+        .min = {.x = image->x0, .y = image->y0},
+        .max = {.x = image->x0 + (int32_t)image->width - 1, .y = image->y0 + (int32_t)image->height - 1}};
     exr_result_t result = exr_set_longname_support(exr, 1);
     if (result == EXR_ERR_SUCCESS)
         result = exr_add_part(exr, "image", EXR_STORAGE_SCANLINE, &part);
     if (result == EXR_ERR_SUCCESS)
-        result = exr_initialize_required_attr(exr, part, &display, &data, 1, &centre, 1, EXR_LINEORDER_INCREASING_Y, EXR_COMPRESSION_ZIP);
+        result = exr_initialize_required_attr(exr, part, &display, &data, 1, &centre, 1, EXR_LINEORDER_INCREASING_Y,
+                                              EXR_COMPRESSION_ZIP);
     for (uint32_t c = 0; c < image->channel_count && result == EXR_ERR_SUCCESS; c++) {
         char key[80];
         snprintf(key, sizeof key, "unit.%s", image->channels[c].name);
-        result = exr_add_channel(exr, part, image->channels[c].name, EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+        result =
+            exr_add_channel(exr, part, image->channels[c].name, EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
         if (result == EXR_ERR_SUCCESS && image->channels[c].unit[0])
             result = exr_attr_set_string(exr, part, key, image->channels[c].unit);
     }
@@ -359,13 +378,15 @@ static exr_result_t write_lines(exr_context_t exr, const struct sr_image *image,
         exr_chunk_info_t info;
         result = exr_write_scanline_chunk_info(exr, 0, image->y0 + (int32_t)y, &info);
         if (result == EXR_ERR_SUCCESS)
-            result = is_started ? exr_encoding_update(exr, 0, &info, &pipeline) : exr_encoding_initialize(exr, 0, &info, &pipeline);
+            result = is_started ? exr_encoding_update(exr, 0, &info, &pipeline)
+                                : exr_encoding_initialize(exr, 0, &info, &pipeline);
         for (int16_t c = 0; c < pipeline.channel_count && result == EXR_ERR_SUCCESS; c++) {
             exr_coding_channel_info_t *channel = &pipeline.channels[c];
             int place = sr_image_find_channel(image, channel->channel_name);
             if (place < 0)
                 result = EXR_ERR_INVALID_ARGUMENT;
-            channel->encode_from_ptr = (const uint8_t *)(floats + sr_image_index(image, 0, y) + (place < 0 ? 0 : place));
+            channel->encode_from_ptr =
+                (const uint8_t *)(floats + sr_image_index(image, 0, y) + (place < 0 ? 0 : place));
             channel->user_data_type = EXR_PIXEL_FLOAT;
             channel->user_bytes_per_element = 4;
             channel->user_pixel_stride = (int32_t)(image->channel_count * 4);
@@ -392,15 +413,16 @@ static float *decoded(const struct sr_image *image)
     return floats;
 }
 
-static sr_status encode(const struct sr_image *image, const struct sr_image_write_options *options, struct sr_array *out,
-                        struct sr_error *error)
+static sr_status encode(const struct sr_image *image, const struct sr_image_write_options *options,
+                        struct sr_array *out, struct sr_error *error)
 {
     (void)options;
     if ((uint64_t)image->width * image->channel_count * 4 > INT32_MAX || image->channel_count > INT16_MAX)
         return sr_fail(error, SR_ERROR_USAGE, "an EXR file takes rows of 2 GiB and 32767 channels at most");
     for (uint32_t c = 0; c < image->channel_count; c++)
         if (!image->channels[c].name[0] || sr_image_find_channel(image, image->channels[c].name) != (int)c)
-            return sr_fail(error, SR_ERROR_USAGE, "an EXR file needs channel names that differ, channel %u is '%s'", c, image->channels[c].name);
+            return sr_fail(error, SR_ERROR_USAGE, "an EXR file needs channel names that differ, channel %u is '%s'", c,
+                           image->channels[c].name);
     float *floats = image->floats ? image->floats : decoded(image);
     if (!floats)
         return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory to write an EXR file");
@@ -421,8 +443,8 @@ static sr_status encode(const struct sr_image *image, const struct sr_image_writ
         sr_free(floats);
     if (result == EXR_ERR_SUCCESS)
         return SR_OK;
-    return sr_fail(error, result == EXR_ERR_OUT_OF_MEMORY ? SR_ERROR_RESOURCE : SR_ERROR_USAGE, "the EXR library says: %s",
-                   job.message[0] ? job.message : exr_get_default_error_message(result));
+    return sr_fail(error, result == EXR_ERR_OUT_OF_MEMORY ? SR_ERROR_RESOURCE : SR_ERROR_USAGE,
+                   "the EXR library says: %s", job.message[0] ? job.message : exr_get_default_error_message(result));
 }
 
 const struct sr_image_codec sr_image_codec_exr = {"EXR", {".exr"}, is_mine, decode, encode};

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Image files: which format it is, told by content first and the ending second; read whole, written beside and renamed. */
+/* Image files: which format it is, told by content first and the ending second; read whole, written beside and
+ * renamed. */
 #include "image/codec.h"
 
 #include <string.h>
@@ -28,8 +29,8 @@ bool sr_image_put(struct sr_array *out, const void *bytes, size_t size)
     return true;
 }
 
-sr_status sr_image_decode(const char *label, const void *data, size_t size, enum sr_image_encoding encoding, struct sr_image **image,
-                          struct sr_error *error)
+sr_status sr_image_decode(const char *label, const void *data, size_t size, enum sr_image_encoding encoding,
+                          struct sr_image **image, struct sr_error *error)
 {
     *image = NULL;
     if (size == 0)
@@ -40,13 +41,16 @@ sr_status sr_image_decode(const char *label, const void *data, size_t size, enum
             return codecs[i]->decode(&source, image, error);
     const struct sr_image_codec *codec = find_by_ending(label);
     if (codec && codec->is_mine)
-        return sr_fail(error, SR_ERROR_INPUT, "%s: does not begin like a %s file, or like any image that can be read", label, codec->name);
+        return sr_fail(error, SR_ERROR_INPUT, "%s: does not begin like a %s file, or like any image that can be read",
+                       label, codec->name);
     if (!codec)
-        return sr_fail(error, SR_ERROR_INPUT, "%s: is no image that can be read: EXR, PNG, JPEG, PFM, HDR or TGA was expected", label);
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "%s: is no image that can be read: EXR, PNG, JPEG, PFM, HDR or TGA was expected", label);
     return codec->decode(&source, image, error);
 }
 
-sr_status sr_image_read_as(const char *path, enum sr_image_encoding encoding, struct sr_image **image, struct sr_error *error)
+sr_status sr_image_read_as(const char *path, enum sr_image_encoding encoding, struct sr_image **image,
+                           struct sr_error *error)
 {
     *image = NULL;
     char *data;
@@ -63,8 +67,9 @@ sr_status sr_image_read(const char *path, struct sr_image **image, struct sr_err
     return sr_image_read_as(path, SR_IMAGE_SRGB, image, error);
 }
 
-sr_status sr_image_encode(const char *ending, const struct sr_image *image, const struct sr_image_write_options *options, void **data,
-                          size_t *size, struct sr_error *error)
+sr_status sr_image_encode(const char *ending, const struct sr_image *image,
+                          const struct sr_image_write_options *options, void **data, size_t *size,
+                          struct sr_error *error)
 {
     static const struct sr_image_write_options none = {0};
     *data = NULL;

@@ -3,9 +3,10 @@
  *
  *     value = (m + 1/2) 2^(e - 136) / EXPOSURE          [W/(sr m^2) by the format's custom]
  *
- * G. Ward, Real Pixels, Graphics Gems II, 1991. Writers cut the mantissa off, so the half makes the mean right; e = 0 is
- * black. XYZE is converted to sRGB's primaries. Both run-length schemes are read, the newer is written. Limits: one part in
- * 128 of the largest component; negative and NaN become 0 when written; only the row-major orders (-Y +X, +Y +X, …) are read. */
+ * G. Ward, Real Pixels, Graphics Gems II, 1991. Writers cut the mantissa off, so the half makes the mean right;
+ * e = 0 is black. XYZE is converted to sRGB's primaries. Both run-length schemes are read, the newer is written.
+ * Limits: one part in 128 of the largest component; negative and NaN become 0 when written; only the row-major
+ * orders (-Y +X, +Y +X, …) are read. */
 #include "image/codec.h"
 
 #include <math.h>
@@ -104,7 +105,8 @@ static const char *read_header(struct cursor *c, struct header *h)
             double exposure = strtod(line + 9, NULL); // several multiply
             if (isfinite(exposure) && exposure > 0)
                 h->exposure *= exposure;
-        } else if (sscanf(line, "PRIMARIES=%lf %lf %lf %lf %lf %lf %lf %lf", v, v + 1, v + 2, v + 3, v + 4, v + 5, v + 6, v + 7) == 8) {
+        } else if (sscanf(line, "PRIMARIES=%lf %lf %lf %lf %lf %lf %lf %lf", v, v + 1, v + 2, v + 3, v + 4, v + 5,
+                          v + 6, v + 7) == 8) {
             memcpy(h->primaries, v, sizeof h->primaries);
             h->has_primaries = true;
         }
@@ -159,8 +161,9 @@ static sr_status decode(const struct sr_image_source *source, struct sr_image **
             put_pixel(&h, rgbe + 4 * (size_t)x, row + 3 * (size_t)(h.is_right_to_left ? width - 1 - x : x));
     }
     status = ok     ? SR_OK
-             : rgbe ? sr_fail(error, SR_ERROR_INPUT, "%s: is damaged or cut short in row %u: %u rows of %u pixels were expected", source->label,
-                              y - 1, height, width)
+             : rgbe ? sr_fail(error, SR_ERROR_INPUT,
+                              "%s: is damaged or cut short in row %u: %u rows of %u pixels were expected",
+                              source->label, y - 1, height, width)
                     : sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory to read it", source->label);
     sr_free(rgbe);
     if (status == SR_OK && h.has_primaries && !h.is_xyz) {
@@ -226,15 +229,15 @@ static bool put_header(const struct sr_image *image, struct sr_array *out)
     int n = snprintf(text, sizeof text, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n");
     if (image->has_chromaticities) {
         const double(*k)[2] = image->chromaticities;
-        n += snprintf(text + n, sizeof text - (size_t)n, "PRIMARIES=%.6f %.6f %.6f %.6f %.6f %.6f %.6f %.6f\n", k[0][0], k[0][1], k[1][0], k[1][1],
-                      k[2][0], k[2][1], k[3][0], k[3][1]);
+        n += snprintf(text + n, sizeof text - (size_t)n, "PRIMARIES=%.6f %.6f %.6f %.6f %.6f %.6f %.6f %.6f\n", k[0][0],
+                      k[0][1], k[1][0], k[1][1], k[2][0], k[2][1], k[3][0], k[3][1]);
     }
     n += snprintf(text + n, sizeof text - (size_t)n, "\n-Y %u +X %u\n", image->height, image->width);
     return sr_image_put(out, text, (size_t)n);
 }
 
-static sr_status encode(const struct sr_image *image, const struct sr_image_write_options *options, struct sr_array *out,
-                        struct sr_error *error)
+static sr_status encode(const struct sr_image *image, const struct sr_image_write_options *options,
+                        struct sr_array *out, struct sr_error *error)
 {
     (void)options;
     int rgb[3];

@@ -42,18 +42,25 @@ static bool pixel_bytes(uint64_t width, uint64_t height, uint32_t channel_count,
            !__builtin_mul_overflow(n, type == SR_IMAGE_FLOATS ? sizeof(float) : 1, size);
 }
 
-sr_status sr_image_create(uint32_t width, uint32_t height, uint32_t channel_count, const char *const *names, enum sr_image_type type,
-                          struct sr_image **image, struct sr_error *error)
+sr_status sr_image_create(uint32_t width, uint32_t height, uint32_t channel_count, const char *const *names,
+                          enum sr_image_type type, struct sr_image **image, struct sr_error *error)
 {
     *image = NULL;
-    if (width == 0 || height == 0 || channel_count == 0 || width > MAX_SIDE || height > MAX_SIDE || channel_count > MAX_CHANNELS)
-        return sr_fail(error, SR_ERROR_INPUT, "an image of %u x %u pixels with %u channels: sides of 1 to %d and 1 to %d channels were expected",
-                       width, height, channel_count, (int)MAX_SIDE, (int)MAX_CHANNELS);
+    if (width == 0 || height == 0 || channel_count == 0 || width > MAX_SIDE || height > MAX_SIDE ||
+        channel_count > MAX_CHANNELS)
+        return sr_fail(
+            error, SR_ERROR_INPUT,
+            "an image of %u x %u pixels with %u channels: sides of 1 to %d and 1 to %d channels were expected", width,
+            height, channel_count, (int)MAX_SIDE, (int)MAX_CHANNELS);
     size_t size;
     bool fits = pixel_bytes(width, height, channel_count, type, &size) && size <= machine_memory_B();
     struct sr_image *made = fits ? sr_alloc(sizeof *made) : NULL;
     if (made) {
-        *made = (struct sr_image){.width = width, .height = height, .channel_count = channel_count, .full_width = width, .full_height = height};
+        *made = (struct sr_image){.width = width,
+                                  .height = height,
+                                  .channel_count = channel_count,
+                                  .full_width = width,
+                                  .full_height = height};
         made->channels = sr_arena_alloc(&made->arena, channel_count * sizeof *made->channels);
         void *pixels = made->channels ? sr_alloc(size) : NULL;
         if (type == SR_IMAGE_FLOATS)
@@ -66,24 +73,28 @@ sr_status sr_image_create(uint32_t width, uint32_t height, uint32_t channel_coun
         }
     }
     if (!made)
-        return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for an image of %u x %u pixels with %u channels", width, height, channel_count);
+        return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for an image of %u x %u pixels with %u channels",
+                       width, height, channel_count);
     name_channels(made, names);
     *image = made;
     return SR_OK;
 }
 
-sr_status sr_image_create_for(const struct sr_image_source *source, uint64_t width, uint64_t height, uint32_t channel_count,
-                              const char *const *names, enum sr_image_type type, struct sr_image **image, struct sr_error *error)
+sr_status sr_image_create_for(const struct sr_image_source *source, uint64_t width, uint64_t height,
+                              uint32_t channel_count, const char *const *names, enum sr_image_type type,
+                              struct sr_image **image, struct sr_error *error)
 {
     *image = NULL;
     size_t size;
     if (width == 0 || height == 0 || width > MAX_SIDE || height > MAX_SIDE)
-        return sr_fail(error, SR_ERROR_INPUT, "%s: tells a size of %llu x %llu pixels, sides of 1 to %d were expected", source->label,
-                       (unsigned long long)width, (unsigned long long)height, (int)MAX_SIDE);
+        return sr_fail(error, SR_ERROR_INPUT, "%s: tells a size of %llu x %llu pixels, sides of 1 to %d were expected",
+                       source->label, (unsigned long long)width, (unsigned long long)height, (int)MAX_SIDE);
     size_t allowed = ((size_t)256 << 20) + (source->size < SIZE_MAX / 4096 ? source->size * 2000 : SIZE_MAX / 2);
     if (!pixel_bytes(width, height, channel_count, type, &size) || size > allowed)
-        return sr_fail(error, SR_ERROR_INPUT, "%s: tells a size of %llu x %llu pixels with %u channels, which its %zu bytes cannot hold", source->label,
-                       (unsigned long long)width, (unsigned long long)height, channel_count, source->size);
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "%s: tells a size of %llu x %llu pixels with %u channels, which its %zu bytes cannot hold",
+                       source->label, (unsigned long long)width, (unsigned long long)height, channel_count,
+                       source->size);
     struct sr_error why = {0};
     sr_status status = sr_image_create((uint32_t)width, (uint32_t)height, channel_count, names, type, image, &why);
     if (status == SR_OK)
@@ -114,15 +125,18 @@ static sr_status copy_attributes(struct sr_image *to, const struct sr_image *fro
     return status;
 }
 
-sr_status sr_image_crop(const struct sr_image *image, uint32_t x, uint32_t y, uint32_t width, uint32_t height, struct sr_image **cropped,
-                        struct sr_error *error)
+sr_status sr_image_crop(const struct sr_image *image, uint32_t x, uint32_t y, uint32_t width, uint32_t height,
+                        struct sr_image **cropped, struct sr_error *error)
 {
     *cropped = NULL;
-    if (width == 0 || height == 0 || x >= image->width || y >= image->height || width > image->width - x || height > image->height - y)
-        return sr_fail(error, SR_ERROR_USAGE, "a part of %u x %u pixels at (%u, %u) does not lie in an image of %u x %u", width, height, x, y,
+    if (width == 0 || height == 0 || x >= image->width || y >= image->height || width > image->width - x ||
+        height > image->height - y)
+        return sr_fail(error, SR_ERROR_USAGE,
+                       "a part of %u x %u pixels at (%u, %u) does not lie in an image of %u x %u", width, height, x, y,
                        image->width, image->height);
     struct sr_image *part;
-    sr_status status = sr_image_create(width, height, image->channel_count, NULL, image->floats ? SR_IMAGE_FLOATS : SR_IMAGE_BYTES, &part, error);
+    sr_status status = sr_image_create(width, height, image->channel_count, NULL,
+                                       image->floats ? SR_IMAGE_FLOATS : SR_IMAGE_BYTES, &part, error);
     if (status != SR_OK)
         return status;
     status = copy_attributes(part, image, error);
@@ -239,9 +253,11 @@ sr_status sr_image_to_float(struct sr_image *image, struct sr_error *error)
     if (image->floats)
         return SR_OK;
     size_t n = (size_t)image->width * image->height;
-    float *floats = n * image->channel_count <= SIZE_MAX / 8 ? sr_alloc(n * image->channel_count * sizeof(float)) : NULL;
+    float *floats =
+        n * image->channel_count <= SIZE_MAX / 8 ? sr_alloc(n * image->channel_count * sizeof(float)) : NULL;
     if (!floats)
-        return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory to turn an image of %u x %u pixels into floats", image->width, image->height);
+        return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory to turn an image of %u x %u pixels into floats",
+                       image->width, image->height);
     for (uint32_t c = 0; c < image->channel_count; c++) {
         bool is_curved = image->encoding == SR_IMAGE_SRGB && !is_alpha(image, c);
         float table[256];

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* JPEG through libjpeg, read only: grey and colour become bytes in sRGB.
  *
- * ITU-T T.81 (1992), baseline and progressive. Limits: CMYK, lossless and 12-bit files are refused, as are files of more than
- * 500 scans (they cost time without end) and files that end early, which libjpeg alone would fill with grey. */
+ * ITU-T T.81 (1992), baseline and progressive. Limits: CMYK, lossless and 12-bit files are refused, as are files of
+ * more than 500 scans (they cost time without end) and files that end early, which libjpeg alone would fill with
+ * grey. */
 #include "image/codec.h"
 
 #include <setjmp.h>
@@ -51,7 +52,8 @@ static void on_message(j_common_ptr jpeg, int level)
     struct job *job = job_of(jpeg);
     if (level >= 0 || (jpeg->err->msg_code != JWRN_JPEG_EOF && jpeg->err->msg_code != JWRN_HIT_MARKER))
         return;
-    job->status = sr_fail(job->error, SR_ERROR_INPUT, "%s: is damaged or cut short: more of a JPEG image was expected", job->source->label);
+    job->status = sr_fail(job->error, SR_ERROR_INPUT, "%s: is damaged or cut short: more of a JPEG image was expected",
+                          job->source->label);
     longjmp(job->escape, 1);
 }
 
@@ -65,7 +67,8 @@ static void watch(j_common_ptr jpeg)
     struct job *job = job_of(jpeg);
     if (job->jpeg.input_scan_number <= MAX_SCANS)
         return;
-    job->status = sr_fail(job->error, SR_ERROR_INPUT, "%s: has more than %d scans, an image was expected", job->source->label, (int)MAX_SCANS);
+    job->status = sr_fail(job->error, SR_ERROR_INPUT, "%s: has more than %d scans, an image was expected",
+                          job->source->label, (int)MAX_SCANS);
     longjmp(job->escape, 1);
 }
 
@@ -77,13 +80,14 @@ static void read_all(struct job *job)
     jpeg_mem_src(jpeg, job->source->data, (unsigned long)job->source->size);
     jpeg_read_header(jpeg, TRUE);
     if (jpeg->num_components != 1 && jpeg->num_components != 3) {
-        job->status = sr_fail(job->error, SR_ERROR_INPUT, "%s: has %d colour components, 1 (grey) or 3 were expected", job->source->label,
-                              jpeg->num_components);
+        job->status = sr_fail(job->error, SR_ERROR_INPUT, "%s: has %d colour components, 1 (grey) or 3 were expected",
+                              job->source->label, jpeg->num_components);
         return;
     }
     uint32_t channels = (uint32_t)jpeg->num_components;
     jpeg->out_color_space = channels == 1 ? JCS_GRAYSCALE : JCS_RGB;
-    job->status = sr_image_create_for(job->source, jpeg->image_width, jpeg->image_height, channels, NULL, SR_IMAGE_BYTES, &job->image, job->error);
+    job->status = sr_image_create_for(job->source, jpeg->image_width, jpeg->image_height, channels, NULL,
+                                      SR_IMAGE_BYTES, &job->image, job->error);
     if (job->status != SR_OK)
         return;
     jpeg_start_decompress(jpeg);

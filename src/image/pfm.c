@@ -3,8 +3,8 @@
  *
  *     value = |scale| * float                 little-endian where scale < 0
  *
- * P. Debevec's format as described by P. Bourke. Written little-endian with scale -1: the bits of every float are kept,
- * NaN and denormals too. Limits: channels beyond R, G, B (or one grey) are not written. */
+ * P. Debevec's format as described by P. Bourke. Written little-endian with scale -1: the bits of every float are
+ * kept, NaN and denormals too. Limits: channels beyond R, G, B (or one grey) are not written. */
 #include "image/codec.h"
 
 #include <math.h>
@@ -57,12 +57,14 @@ static sr_status decode(const struct sr_image_source *source, struct sr_image **
     char words[3][32], *end = words[2];
     uint64_t width = 0, height = 0;
     double scale = 0;
-    bool ok = take_word(source, &at, words[0]) && take_word(source, &at, words[1]) && take_word(source, &at, words[2]) &&
-              read_size(words[0], &width) && read_size(words[1], &height);
+    bool ok = take_word(source, &at, words[0]) && take_word(source, &at, words[1]) &&
+              take_word(source, &at, words[2]) && read_size(words[0], &width) && read_size(words[1], &height);
     if (ok)
         scale = strtod(words[2], &end);
     if (!ok || *end || !isfinite(scale) || scale == 0)
-        return sr_fail(error, SR_ERROR_INPUT, "%s: the PFM header is damaged: width, height and a scale that is not 0 were expected", source->label);
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "%s: the PFM header is damaged: width, height and a scale that is not 0 were expected",
+                       source->label);
     sr_status status = sr_image_create_for(source, width, height, channels, NULL, SR_IMAGE_FLOATS, image, error);
     if (status != SR_OK)
         return status;
@@ -72,7 +74,8 @@ static sr_status decode(const struct sr_image_source *source, struct sr_image **
     if (source->size - at < needed) {
         sr_image_free(*image);
         *image = NULL;
-        return sr_fail(error, SR_ERROR_INPUT, "%s: is cut short: %zu bytes of pixels, %zu were expected", source->label, source->size - at, needed);
+        return sr_fail(error, SR_ERROR_INPUT, "%s: is cut short: %zu bytes of pixels, %zu were expected", source->label,
+                       source->size - at, needed);
     }
     float factor = (float)fabs(scale);
     for (size_t y = 0; y < height; y++) {
@@ -86,8 +89,8 @@ static sr_status decode(const struct sr_image_source *source, struct sr_image **
     return SR_OK;
 }
 
-static sr_status encode(const struct sr_image *image, const struct sr_image_write_options *options, struct sr_array *out,
-                        struct sr_error *error)
+static sr_status encode(const struct sr_image *image, const struct sr_image_write_options *options,
+                        struct sr_array *out, struct sr_error *error)
 {
     (void)options;
     int rgb[3];

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* PNG through libpng: up to 8 bits become bytes, 16 bits become linear floats; written as 8-bit sRGB.
  *
- * ISO/IEC 15948:2004. Whole numbers are taken as sRGB unless the caller says linear; gAMA, cHRM and iCCP are not used.
- * Limits: text chunks are neither read nor written. */
+ * ISO/IEC 15948:2004. Whole numbers are taken as sRGB unless the caller says linear; gAMA, cHRM and iCCP are not
+ * used. Limits: text chunks are neither read nor written. */
 #include "image/codec.h"
 
 #include <png.h>
@@ -31,7 +31,8 @@ static void on_error(png_structp png, png_const_charp text)
     struct job *job = png_get_error_ptr(png);
     const char *label = job->source ? job->source->label : "PNG";
     if (job->status == SR_OK)
-        job->status = sr_fail(job->error, job->source ? SR_ERROR_INPUT : SR_ERROR_RESOURCE, "%s: the PNG library says: %s", label, text);
+        job->status = sr_fail(job->error, job->source ? SR_ERROR_INPUT : SR_ERROR_RESOURCE,
+                              "%s: the PNG library says: %s", label, text);
     longjmp(job->escape, 1);
 }
 
@@ -57,8 +58,9 @@ static void take(png_structp png, png_bytep to, size_t size)
 {
     struct job *job = png_get_io_ptr(png);
     if (job->source->size - job->at < size) {
-        job->status = sr_fail(job->error, SR_ERROR_INPUT, "%s: is cut short after %zu bytes: more of a PNG image was expected", job->source->label,
-                              job->source->size);
+        job->status =
+            sr_fail(job->error, SR_ERROR_INPUT, "%s: is cut short after %zu bytes: more of a PNG image was expected",
+                    job->source->label, job->source->size);
         png_error(png, "cut short");
     }
     memcpy(to, job->source->data + job->at, size);
@@ -77,14 +79,14 @@ static void flush(png_structp png)
     (void)png;
 }
 
-static void read_wide(png_structp png, struct job *job, uint32_t channels)
+static void read_wide(png_structp png, struct job *job, uint32_t channels, int passes)
 {
     struct sr_image *image = job->image;
     size_t row = (size_t)image->width * channels * 2;
     job->wide = row <= SIZE_MAX / 4 / image->height ? sr_alloc(row * image->height) : NULL;
     if (!job->wide)
         png_error(png, "not enough memory");
-    for (int pass = png_set_interlace_handling(png); pass > 0; pass--)
+    for (; passes > 0; passes--)
         for (uint32_t y = 0; y < image->height; y++)
             png_read_row(png, job->wide + row * y, NULL);
     for (size_t i = 0; i < (size_t)image->width * image->height * channels; i++) {
@@ -107,19 +109,19 @@ static void read_all(png_structp png, png_infop info, struct job *job)
     bool has_alpha = (type & PNG_COLOR_MASK_ALPHA) || png_get_valid(png, info, PNG_INFO_tRNS);
     uint32_t channels = ((type & PNG_COLOR_MASK_COLOR) ? 3 : 1) + has_alpha;
     uint32_t width = png_get_image_width(png, info), height = png_get_image_height(png, info);
-    job->status = sr_image_create_for(job->source, width, height, channels, NULL, depth == 16 ? SR_IMAGE_FLOATS : SR_IMAGE_BYTES, &job->image,
-                                      job->error);
+    job->status = sr_image_create_for(job->source, width, height, channels, NULL,
+                                      depth == 16 ? SR_IMAGE_FLOATS : SR_IMAGE_BYTES, &job->image, job->error);
     if (job->status != SR_OK)
         png_error(png, "too large");
-    int passes = depth == 16 ? 0 : png_set_interlace_handling(png);
+    int passes = png_set_interlace_handling(png);
     png_read_update_info(png, info);
     if (png_get_rowbytes(png, info) != (size_t)width * channels * (depth == 16 ? 2 : 1))
         png_error(png, "the rows have an unexpected length");
     if (depth == 16) {
-        read_wide(png, job, channels);
+        read_wide(png, job, channels, passes);
         job->image->encoding = SR_IMAGE_LINEAR;
     }
-    for (; passes > 0; passes--)
+    for (; depth < 16 && passes > 0; passes--)
         for (uint32_t y = 0; y < height; y++)
             png_read_row(png, job->image->bytes + (size_t)y * width * channels, NULL);
     png_read_end(png, NULL);
@@ -128,9 +130,12 @@ static void read_all(png_structp png, png_infop info, struct job *job)
 static sr_status decode(const struct sr_image_source *source, struct sr_image **image, struct sr_error *error)
 {
     struct job *job = sr_alloc(sizeof *job);
-    png_structp png = job ? png_create_read_struct_2(PNG_LIBPNG_VER_STRING, job, on_error, on_warning, NULL, allocate, release) : NULL;
+    png_structp png =
+        job ? png_create_read_struct_2(PNG_LIBPNG_VER_STRING, job, on_error, on_warning, NULL, allocate, release)
+            : NULL;
     png_infop info = png ? png_create_info_struct(png) : NULL;
-    sr_status status = info ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory to read it", source->label);
+    sr_status status =
+        info ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory to read it", source->label);
     if (info) {
         job->source = source;
         job->error = error;
@@ -154,11 +159,12 @@ static sr_status decode(const struct sr_image_source *source, struct sr_image **
 static void write_all(png_structp png, png_infop info, struct job *job)
 {
     const struct sr_image *image = job->image;
-    static const int types[5] = {0, PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGB_ALPHA};
+    static const int types[5] = {0, PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB,
+                                 PNG_COLOR_TYPE_RGB_ALPHA};
     png_set_write_fn(png, job, put, flush);
     png_set_user_limits(png, 1 << 30, 1 << 30);
-    png_set_IHDR(png, info, image->width, image->height, 8, types[image->channel_count], PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-                 PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(png, info, image->width, image->height, 8, types[image->channel_count], PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     if (image->encoding == SR_IMAGE_SRGB)
         png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_write_info(png, info);
@@ -179,15 +185,17 @@ static bool is_plain(const struct sr_image *image)
     return true;
 }
 
-static sr_status encode(const struct sr_image *image, const struct sr_image_write_options *options, struct sr_array *out,
-                        struct sr_error *error)
+static sr_status encode(const struct sr_image *image, const struct sr_image_write_options *options,
+                        struct sr_array *out, struct sr_error *error)
 {
     struct sr_image *mapped = NULL;
     sr_status status = is_plain(image) ? SR_OK : sr_image_tone_map(image, &options->tone, &mapped, error);
     if (status != SR_OK)
         return status;
     struct job *job = sr_alloc(sizeof *job);
-    png_structp png = job ? png_create_write_struct_2(PNG_LIBPNG_VER_STRING, job, on_error, on_warning, NULL, allocate, release) : NULL;
+    png_structp png =
+        job ? png_create_write_struct_2(PNG_LIBPNG_VER_STRING, job, on_error, on_warning, NULL, allocate, release)
+            : NULL;
     png_infop info = png ? png_create_info_struct(png) : NULL;
     status = info ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "not enough memory to write a PNG file");
     if (info) {

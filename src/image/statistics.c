@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* What the values of one channel are like: mean, spread, percentiles, and how many are no proper numbers.
  *
- * A percentile p of n sorted values is interpolated linearly at p (n - 1). Sums are carried in double with pairwise blocks of
- * one row, so that 10^9 pixels lose no digit that a float has. */
+ * A percentile p of n sorted values is interpolated linearly at p (n - 1). Sums are carried in double with pairwise
+ * blocks of one row, so that 10^9 pixels lose no digit that a float has. */
 #include "image/codec.h"
 
 #include <math.h>
@@ -19,7 +19,8 @@ static double percentile(const float *sorted, size_t n, double p)
 {
     double at = p * (double)(n - 1);
     size_t i = (size_t)at;
-    return i + 1 < n ? (double)sorted[i] + (at - (double)i) * ((double)sorted[i + 1] - (double)sorted[i]) : (double)sorted[n - 1];
+    return i + 1 < n ? (double)sorted[i] + (at - (double)i) * ((double)sorted[i + 1] - (double)sorted[i])
+                     : (double)sorted[n - 1];
 }
 
 sr_status sr_image_statistics(const struct sr_image *image, uint32_t channel, struct sr_image_statistics *statistics,
@@ -28,7 +29,8 @@ sr_status sr_image_statistics(const struct sr_image *image, uint32_t channel, st
     struct sr_image_statistics s = {0};
     *statistics = s;
     if (channel >= image->channel_count)
-        return sr_fail(error, SR_ERROR_USAGE, "the image has %u channels, number %u was asked for", image->channel_count, channel);
+        return sr_fail(error, SR_ERROR_USAGE, "the image has %u channels, number %u was asked for",
+                       image->channel_count, channel);
     size_t pixels = (size_t)image->width * image->height;
     float *values = sr_alloc(pixels * sizeof *values);
     if (!values)

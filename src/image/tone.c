@@ -5,8 +5,9 @@
  *     Reinhard   Y' = Y (1 + Y / 16) / (1 + Y),   rgb' = rgb Y' / Y      white at Y = 4
  *     filmic     h(v) / h(11.2),  h(v) = (v (A v + C B) + D E) / (v (A v + B) + D F) - E / F
  *
- * Reinhard et al., Photographic Tone Reproduction for Digital Images, 2002, eqs. 1 and 4; J. Hable, Uncharted 2: HDR Lighting,
- * GDC 2010 (A = 0.15, B = 0.50, C = 0.10, D = 0.20, E = 0.02, F = 0.30). Limits: global operators; no dither. */
+ * Reinhard et al., Photographic Tone Reproduction for Digital Images, 2002, eqs. 1 and 4; J. Hable, Uncharted 2:
+ * HDR Lighting, GDC 2010 (A = 0.15, B = 0.50, C = 0.10, D = 0.20, E = 0.02, F = 0.30). Limits: global operators; no
+ * dither. */
 #include "image/codec.h"
 
 #include <math.h>
@@ -68,7 +69,8 @@ static const double srgb_primaries[4][2] = {{0.64, 0.33}, {0.30, 0.60}, {0.15, 0
 /* The Bradford transform from one white to another: a scaling of sharpened cone responses. */
 static bool adapt(const double from[3], const double to[3], double m[3][3])
 {
-    double cones[3][3] = {{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}, back[3][3], scaled[3][3];
+    double cones[3][3] = {{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}, back[3][3],
+           scaled[3][3];
     bool ok = invert(cones, back);
     for (int i = 0; i < 3; i++) {
         double a = 0, b = 0;
@@ -91,7 +93,8 @@ static struct colour find_colour(const struct sr_image *image)
     bool is_rgb = sr_image_find_rgb(image, colour.channel), has_matrix = false;
     xyz_from_rgb(srgb_primaries, srgb, d65);
     invert(srgb, to_srgb);
-    int x = sr_image_find_channel(image, "X"), y = sr_image_find_channel(image, "Y"), z = sr_image_find_channel(image, "Z");
+    int x = sr_image_find_channel(image, "X"), y = sr_image_find_channel(image, "Y"),
+        z = sr_image_find_channel(image, "Z");
     if (!is_rgb && x >= 0 && y >= 0 && z >= 0) {
         memcpy(colour.channel, (int[3]){x, y, z}, sizeof colour.channel);
         memcpy(matrix, to_srgb, sizeof matrix);
@@ -114,7 +117,8 @@ static void get_colour(const struct sr_image *image, const struct colour *colour
 {
     float v[3];
     for (int c = 0; c < 3; c++)
-        v[c] = sr_image_value(image, pixel * image->channel_count + (size_t)colour->channel[c], (uint32_t)colour->channel[c]);
+        v[c] = sr_image_value(image, pixel * image->channel_count + (size_t)colour->channel[c],
+                              (uint32_t)colour->channel[c]);
     bool is_grey = colour->channel[0] == colour->channel[1];
     for (int i = 0; i < 3; i++) {
         rgb[i] = is_grey ? v[0] : colour->m[i][0] * v[0] + colour->m[i][1] * v[1] + colour->m[i][2] * v[2];
@@ -182,7 +186,8 @@ static void apply(enum sr_tone_operator op, float rgb[3])
     }
 }
 
-sr_status sr_image_tone_map(const struct sr_image *image, const struct sr_tone *tone, struct sr_image **mapped, struct sr_error *error)
+sr_status sr_image_tone_map(const struct sr_image *image, const struct sr_tone *tone, struct sr_image **mapped,
+                            struct sr_error *error)
 {
     static const struct sr_tone plain = {0};
     tone = tone ? tone : &plain;

@@ -9,7 +9,8 @@
 /* Random bits: floats of every size and sign, NaN with payloads, infinities, denormals. */
 static void fill_with_random_bits(struct sr_image *image)
 {
-    static const uint32_t special[] = {0x00000000, 0x80000000, 0x7f800000, 0xff800000, 0x7fc00000, 0xffc12345, 0x00000001, 0x807fffff, 0x7f7fffff};
+    static const uint32_t special[] = {0x00000000, 0x80000000, 0x7f800000, 0xff800000, 0x7fc00000,
+                                       0xffc12345, 0x00000001, 0x807fffff, 0x7f7fffff};
     size_t n = (size_t)image->width * image->height * image->channel_count, specials = sizeof special / sizeof *special;
     uint64_t state = 7;
     for (size_t i = 0; i < n; i++) {
@@ -53,7 +54,8 @@ TEST(exr_keeps_units_attributes_chromaticities_and_the_crop)
     memset(longer, 'x', sizeof longer);
     longer[sizeof longer - 1] = 0;
     EXPECT(sr_image_set_attribute(image, "scene", "cornell-box", &error) == SR_OK);
-    EXPECT(sr_image_set_attribute(image, "an attribute with a name longer than thirty-one bytes", longer, &error) == SR_OK);
+    EXPECT(sr_image_set_attribute(image, "an attribute with a name longer than thirty-one bytes", longer, &error) ==
+           SR_OK);
     EXPECT(sr_image_set_attribute(image, "scene", "veach-mis", &error) == SR_OK);
     EXPECT(sr_image_set_attribute(image, "empty", "", &error) == SR_OK);
     EXPECT_EQUAL_INT(image->attribute_count, 3);
@@ -183,7 +185,8 @@ TEST(hdr_writes_no_negative_and_no_nan)
 
 TEST(hdr_reads_the_older_run_lengths_exposure_and_upward_rows)
 {
-    // bottom row: one pixel (m+1/2) 2^(e-136) with m = 127, e = 129 -> 127.5/128, repeated 3 times; top row: black. EXPOSURE 2 halves
+    // bottom row: (m + 1/2) 2^(e - 136) with m = 127, e = 129, which is 127.5 / 128, repeated 3 times; top row: black
+    // the exposures multiply to 2, which halves
     static const char file[] = "#?RADIANCE\n# comment\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=4\nEXPOSURE=0.5\n\n+Y 2 +X 4\n"
                                "\x7f\x7f\x7f\x81\x01\x01\x01\x03\x00\x00\x00\x00\x01\x01\x01\x03";
     struct sr_image *image;
@@ -227,12 +230,14 @@ TEST(tga_is_read_with_runs_palettes_and_any_origin)
     struct sr_image *image;
     struct sr_error error = {0};
     // type 10, 24 bits, 3 x 1: a run of two (B,G,R) = (1,2,3), then one (4,5,6)
-    static const uint8_t runs[] = {0, 0, 10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3, 0, 1, 0, 24, 0x20, 0x81, 1, 2, 3, 0x00, 4, 5, 6};
+    static const uint8_t runs[] = {0, 0, 10, 0,  0,    0,    0, 0, 0, 0,    0, 0, 3,
+                                   0, 1, 0,  24, 0x20, 0x81, 1, 2, 3, 0x00, 4, 5, 6};
     EXPECT(sr_image_decode("a.tga", runs, sizeof runs, SR_IMAGE_SRGB, &image, &error) == SR_OK);
     EXPECT(memcmp(image->bytes, "\3\2\1\3\2\1\6\5\4", 9) == 0);
     sr_image_free(image);
     // type 1: palette of two 24-bit colours from index 5 on; 1 x 2, the bottom row first
-    static const uint8_t palette[] = {1, 1, 1, 5, 0, 2, 0, 24, 0, 0, 0, 0, 1, 0, 2, 0, 8, 0, 'i', 1, 2, 3, 4, 5, 6, 5, 6};
+    static const uint8_t palette[] = {1, 1, 1, 5, 0,   2, 0, 24, 0, 0, 0, 0, 1, 0,
+                                      2, 0, 8, 0, 'i', 1, 2, 3,  4, 5, 6, 5, 6};
     EXPECT(sr_image_decode("b.TGA", palette, sizeof palette, SR_IMAGE_SRGB, &image, &error) == SR_OK);
     EXPECT(memcmp(image->bytes, "\6\5\4\3\2\1", 6) == 0);
     sr_image_free(image);

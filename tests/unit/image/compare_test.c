@@ -65,7 +65,8 @@ TEST(z_of_two_pixels_by_hand)
     sr_image_free(b);
 }
 
-/* Two noisy estimates of one picture; errors of a per-pixel size that spans three decades. `told` scales what a says. */
+/* Two noisy estimates of one picture; errors of a per-pixel size that spans three decades. `told` scales what a
+ * says. */
 static struct sr_image_difference compare_noise(uint64_t seed, double told, double bias, bool only_a)
 {
     enum { SIDE = 300 };
@@ -73,7 +74,8 @@ static struct sr_image_difference compare_noise(uint64_t seed, double told, doub
     struct sr_image *a = make_image(SIDE, SIDE, 2, names), *b = make_image(SIDE, SIDE, only_a ? 1 : 2, names);
     uint64_t state = seed;
     for (size_t p = 0; p < SIDE * SIDE; p++) {
-        double truth = next_uniform(&state), se_a = 0.1 * pow(10, -3 * next_uniform(&state)), se_b = 0.05 * next_uniform(&state) + 1e-3;
+        double truth = next_uniform(&state), se_a = 0.1 * pow(10, -3 * next_uniform(&state)),
+               se_b = 0.05 * next_uniform(&state) + 1e-3;
         a->floats[2 * p] = (float)(truth + bias + se_a * next_gaussian(&state));
         a->floats[2 * p + 1] = (float)(told * se_a);
         if (only_a) {
@@ -129,7 +131,8 @@ TEST(z_finds_a_bias_and_errors_told_too_small)
 TEST(images_that_do_not_match_are_refused)
 {
     static const char *const depth[] = {"Z"};
-    struct sr_image *a = make_image(2, 2, 3, NULL), *b = make_image(2, 3, 3, NULL), *c = make_image(2, 2, 1, depth), *picture;
+    struct sr_image *a = make_image(2, 2, 3, NULL), *b = make_image(2, 3, 3, NULL), *c = make_image(2, 2, 1, depth),
+                    *picture;
     struct sr_image_comparison r;
     struct sr_error error = {0};
     EXPECT_EQUAL_INT(sr_image_compare(a, b, &r, &error), SR_ERROR_INPUT);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* EXR files of other layouts than ours: half, float and uint samples, tiles, each compression, windows off the origin. */
+/* EXR files of other layouts than ours: half, float and uint samples, tiles, each compression, windows off the
+ * origin. */
 #include "make.h"
 
 #if __has_include(<OpenEXR/openexr.h>)
@@ -36,7 +37,9 @@ static void point_at(exr_encode_pipeline_t *pipeline, uint32_t x, uint32_t y)
     for (int c = 0; c < pipeline->channel_count; c++) {
         exr_coding_channel_info_t *channel = &pipeline->channels[c];
         bool is_half = channel->data_type == EXR_PIXEL_HALF, is_float = channel->data_type == EXR_PIXEL_FLOAT;
-        const void *from = is_half ? (const void *)&planes.half[y][x] : is_float ? (const void *)&planes.real[y][x] : (const void *)&planes.whole[y][x];
+        const void *from = is_half    ? (const void *)&planes.half[y][x]
+                           : is_float ? (const void *)&planes.real[y][x]
+                                      : (const void *)&planes.whole[y][x];
         channel->encode_from_ptr = from;
         channel->user_pixel_stride = is_half ? 2 : 4;
         channel->user_line_stride = channel->user_pixel_stride * WIDTH;
@@ -61,7 +64,8 @@ static void write_foreign(const char *path, exr_compression_t compression, bool 
     exr_attr_v2f_t centre = {.x = 0, .y = 0};
     MUST(exr_start_write(&exr, path, EXR_WRITE_FILE_DIRECTLY, &init));
     MUST(exr_add_part(exr, "first", is_tiled ? EXR_STORAGE_TILED : EXR_STORAGE_SCANLINE, &part));
-    MUST(exr_initialize_required_attr(exr, part, &display, &data, 1, &centre, 1, EXR_LINEORDER_INCREASING_Y, compression));
+    MUST(exr_initialize_required_attr(exr, part, &display, &data, 1, &centre, 1, EXR_LINEORDER_INCREASING_Y,
+                                      compression));
     if (is_tiled)
         MUST(exr_set_tile_descriptor(exr, part, TILE, TILE, EXR_TILE_ONE_LEVEL, EXR_TILE_ROUND_DOWN));
     MUST(exr_add_channel(exr, part, "R", EXR_PIXEL_HALF, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
@@ -80,7 +84,8 @@ static void write_foreign(const char *path, exr_compression_t compression, bool 
                 MUST(exr_write_tile_chunk_info(exr, part, x / TILE, y / TILE, 0, 0, &info));
             else
                 MUST(exr_write_scanline_chunk_info(exr, part, Y0 + y, &info));
-            MUST(is_first ? exr_encoding_initialize(exr, part, &info, &pipeline) : exr_encoding_update(exr, part, &info, &pipeline));
+            MUST(is_first ? exr_encoding_initialize(exr, part, &info, &pipeline)
+                          : exr_encoding_update(exr, part, &info, &pipeline));
             point_at(&pipeline, (uint32_t)x, (uint32_t)y);
             if (is_first)
                 MUST(exr_encoding_choose_default_routines(exr, part, &pipeline));
@@ -108,7 +113,8 @@ TEST(exr_of_each_layout_and_compression_gives_the_same_values)
             for (uint32_t x = 0; x < WIDTH; x++)
                 for (int c = 0; c < 3; c++)
                     if (image->floats[sr_image_index(image, x, y) + (size_t)c] != (float)value_at(x, y, c))
-                        test_fail(__FILE__, __LINE__, "compression %d, tiled %d, pixel (%u, %u), channel %d: %g, expected %u",
+                        test_fail(__FILE__, __LINE__,
+                                  "compression %d, tiled %d, pixel (%u, %u), channel %d: %g, expected %u",
                                   (int)compressions[k / 2], (int)(k % 2), x, y, c,
                                   (double)image->floats[sr_image_index(image, x, y) + (size_t)c], value_at(x, y, c));
         sr_image_free(image);

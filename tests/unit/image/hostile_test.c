@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Files that are cut short, damaged or made to hurt: a message with the name, no crash, no leak, no huge allocation. */
+/* Files that are cut short, damaged or made to hurt: a message with the name, no crash, no leak, no huge
+ * allocation. */
 #include "make.h"
 
 struct seed {
@@ -43,7 +44,8 @@ static struct seed file_seed(const char *name)
     return seed;
 }
 
-static struct sr_image *try(const char *label, const uint8_t *data, size_t size, sr_status *status, struct sr_error *error)
+static struct sr_image *try(const char *label, const uint8_t *data, size_t size, sr_status *status,
+                            struct sr_error *error)
 {
     // a copy of exactly this length, so that a sanitizer sees a read behind it
     uint8_t *copy = sr_alloc(size);
@@ -67,7 +69,8 @@ static void cut_and_damage(struct seed seed)
         size_t size = i < 50 ? i * seed.size / 50 : seed.size - 1 - (i - 50);
         image = try(seed.label, seed.data, size, &status, &error);
         if (image || status == SR_OK || !strstr(error.text, seed.label))
-            test_fail(__FILE__, __LINE__, "%s: %zu of %zu bytes: status %d '%s'", seed.label, size, seed.size, (int)status, error.text);
+            test_fail(__FILE__, __LINE__, "%s: %zu of %zu bytes: status %d '%s'", seed.label, size, seed.size,
+                      (int)status, error.text);
     }
     uint64_t state = 99;
     uint8_t *damaged = sr_alloc(seed.size);
@@ -124,8 +127,10 @@ static void expect_refused(const char *label, const void *data, size_t size)
 
 TEST(headers_that_promise_too_much_are_refused)
 {
-    static const char pfm[] = "PF\n100000 100000\n-1\n\0\0\0\0", none[] = "PF\n0 5\n-1\n", negative[] = "PF\n-3 5\n-1\n    ";
-    static const char huge[] = "PF\n99999999999999999999 1\n-1\n    ", scale[] = "Pf\n1 1\n0\n    ", nan_scale[] = "Pf\n1 1\nnan\n    ";
+    static const char pfm[] = "PF\n100000 100000\n-1\n\0\0\0\0", none[] = "PF\n0 5\n-1\n",
+                      negative[] = "PF\n-3 5\n-1\n    ";
+    static const char huge[] = "PF\n99999999999999999999 1\n-1\n    ", scale[] = "Pf\n1 1\n0\n    ",
+                      nan_scale[] = "Pf\n1 1\nnan\n    ";
     static const char hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4000000000 +X 4000000000\n";
     static const char column[] = "#?RADIANCE\n\n+X 10 -Y 10\n";
     static const uint8_t tga[] = {0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 255, 255, 255, 255, 24, 0};

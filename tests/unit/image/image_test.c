@@ -6,7 +6,8 @@ TEST(an_image_that_cannot_be_fails_cleanly)
 {
     struct sr_image *image = (struct sr_image *)1;
     struct sr_error error = {0};
-    EXPECT_EQUAL_INT(sr_image_create(1000000000, 1000000000, 3, NULL, SR_IMAGE_FLOATS, &image, &error), SR_ERROR_RESOURCE);
+    EXPECT_EQUAL_INT(sr_image_create(1000000000, 1000000000, 3, NULL, SR_IMAGE_FLOATS, &image, &error),
+                     SR_ERROR_RESOURCE);
     EXPECT(image == NULL && strstr(error.text, "1000000000 x 1000000000"));
     error = (struct sr_error){0};
     EXPECT_EQUAL_INT(sr_image_create(UINT32_MAX, 1, 1, NULL, SR_IMAGE_BYTES, &image, &error), SR_ERROR_INPUT);
@@ -15,7 +16,8 @@ TEST(an_image_that_cannot_be_fails_cleanly)
     error = (struct sr_error){0};
     EXPECT_EQUAL_INT(sr_image_create(5, 5, 0, NULL, SR_IMAGE_BYTES, &image, &error), SR_ERROR_INPUT);
     error = (struct sr_error){0};
-    EXPECT_EQUAL_INT(sr_image_create(1 << 30, 1 << 30, 65536, NULL, SR_IMAGE_FLOATS, &image, &error), SR_ERROR_RESOURCE);
+    EXPECT_EQUAL_INT(sr_image_create(1 << 30, 1 << 30, 65536, NULL, SR_IMAGE_FLOATS, &image, &error),
+                     SR_ERROR_RESOURCE);
 }
 
 TEST(a_crop_keeps_its_place_and_refuses_what_lies_outside)

@@ -29,15 +29,16 @@ TEST(named_files_have_their_size_and_channels)
     };
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         struct sr_image *image = read_or_fail(test_reference_file(files[i].name));
-        if (image->width != files[i].width || image->height != files[i].height || image->channel_count != files[i].channels ||
-            (image->bytes != NULL) != files[i].is_bytes)
-            test_fail(__FILE__, __LINE__, "%s: %u x %u, %u channels", files[i].name, image->width, image->height, image->channel_count);
+        if (image->width != files[i].width || image->height != files[i].height ||
+            image->channel_count != files[i].channels || (image->bytes != NULL) != files[i].is_bytes)
+            test_fail(__FILE__, __LINE__, "%s: %u x %u, %u channels", files[i].name, image->width, image->height,
+                      image->channel_count);
         sr_image_free(image);
     }
 }
 
-/* Every row and column differs from its neighbours by less than from a row far away: a flipped, sheared or swapped image, or one
- * read with the wrong stride, would not be smooth. */
+/* Every row and column differs from its neighbours by less than from a row far away: a flipped, sheared or swapped
+ * image, or one read with the wrong stride, would not be smooth. */
 static void expect_smooth(const char *name, const struct sr_image *image)
 {
     double near = 0, far = 0;
@@ -45,7 +46,8 @@ static void expect_smooth(const char *name, const struct sr_image *image)
         for (uint32_t x = 0; x + 1 < image->width; x++) {
             double v[3];
             uint32_t far_y = (y + image->height / 2) % image->height, far_x = (x + image->width / 2) % image->width;
-            size_t at[3] = {sr_image_index(image, x, y), sr_image_index(image, x + 1, y + 1), sr_image_index(image, far_x, far_y)};
+            size_t at[3] = {sr_image_index(image, x, y), sr_image_index(image, x + 1, y + 1),
+                            sr_image_index(image, far_x, far_y)};
             for (int k = 0; k < 3; k++)
                 v[k] = image->floats ? tanh((double)image->floats[at[k]]) : image->bytes[at[k]] / 255.0;
             near += fabs(v[1] - v[0]);
@@ -57,9 +59,13 @@ static void expect_smooth(const char *name, const struct sr_image *image)
 
 TEST(photographs_are_smooth)
 {
-    static const char *const names[] = {"envmaps/bitterli_envmap.hdr", "envmaps/grace_latlong.exr", "scenes/teapot/textures/envmap.pfm",
-                                        "scenes/staircase2/textures/wood5.tga", "gltf/ClearCoatTest/FirstRow.jpg",
-                                        "gltf/BoxTextured/glTF/CesiumLogoFlat.png", "references/veach-mis__scene-v4.mean.pfm"};
+    static const char *const names[] = {"envmaps/bitterli_envmap.hdr",
+                                        "envmaps/grace_latlong.exr",
+                                        "scenes/teapot/textures/envmap.pfm",
+                                        "scenes/staircase2/textures/wood5.tga",
+                                        "gltf/ClearCoatTest/FirstRow.jpg",
+                                        "gltf/BoxTextured/glTF/CesiumLogoFlat.png",
+                                        "references/veach-mis__scene-v4.mean.pfm"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         struct sr_image *image = read_or_fail(test_reference_file(names[i]));
         expect_smooth(names[i], image);
