@@ -3,8 +3,9 @@
  *
  *     X = INTEGRAL L(lambda) xbar(lambda) dlambda  [unit of L times nm],   and Y with ybar, Z with zbar
  *
- * Integrals of known spectra are sums by 1 nm from 360 to 830 nm (CIE 015:2018); those of paths are Monte Carlo means of
- * L xbar / pdf, with the functions linear between the samples and zero outside. ybar is V(lambda) of CIE 1924. */
+ * Integrals of known spectra are sums by 1 nm from 360 to 830 nm (CIE 015:2018); those of paths are Monte Carlo
+ * means of L xbar / pdf, with the functions linear between the samples and zero outside. ybar is V(lambda) of CIE
+ * 1924. */
 #include "spectrum/data.h"
 
 typedef float quad __attribute__((vector_size(16)));
@@ -56,7 +57,8 @@ struct sr_xyz sr_spectrum_to_xyz(sr_spectrum L, const struct sr_wavelengths *w)
     sr_spectrum upper = weight * (at - __builtin_convertvector(i, sr_spectrum)), lower = weight - upper;
     quad sum = {0};
     for (int k = 0; k < SR_LAMBDA_COUNT; ++k) {
-        const quad *row = (const quad *)(const void *)sr_data_observer_f[i[k]]; // the last row is followed by a zero one
+        const quad *row =
+            (const quad *)(const void *)sr_data_observer_f[i[k]]; // the last row is followed by a zero one
         sum += lower[k] * row[0] + upper[k] * row[1];
     }
     sum *= 1.0f / SR_LAMBDA_COUNT;

@@ -8,11 +8,11 @@
  * Values are scaled by what they mean: reflectance [1], or radiance in the unit of their source. */
 #include "spectrum/data.h"
 
-#define PLANCK_H 6.62607015e-34         // [J s]
-#define LIGHT_C 299792458.0             // [m/s]
-#define BOLTZMANN_K 1.380649e-23        // [J/K]
-#define C2_NM_K 1.438776877503933e7     // h c / k [nm K]
-#define PEAK 4.965114231744276          // solves x = 5 (1 - exp(-x)): Wien's law
+#define PLANCK_H 6.62607015e-34     // [J s]
+#define LIGHT_C 299792458.0         // [m/s]
+#define BOLTZMANN_K 1.380649e-23    // [J/K]
+#define C2_NM_K 1.438776877503933e7 // h c / k [nm K]
+#define PEAK 4.965114231744276      // solves x = 5 (1 - exp(-x)): Wien's law
 #define PEAK_EXPM1 142.3249151279
 
 static sr_spectrum table_eval(const struct sr_table *table, sr_spectrum lambda)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Spectra with names: pbrt's, their aliases, and ours.
  *
- * pbrt's glass-F5, -F10 and -F11 hold the data of SF5, SF10 and SF11; they keep their names here and have true ones beside
- * them. Its stdillum-D50 (x = 0.3368, y = 0.3580) is not CIE's, which is illum-cieD50 (0.3457, 0.3585).
+ * pbrt's glass-F5, -F10 and -F11 hold the data of SF5, SF10 and SF11; they keep their names here and have true ones
+ * beside them. Its stdillum-D50 (x = 0.3368, y = 0.3580) is not CIE's, which is illum-cieD50 (0.3457, 0.3585).
  * Illuminants are scaled as their sources print them (mostly 100 at 560 nm); indices are numbers [1]. */
 #include "spectrum/data.h"
 

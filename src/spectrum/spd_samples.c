@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Spectra from pairs (lambda [nm], value), linear between them and zero outside, as even tables.
  *
- * Pairs that stand evenly are taken as they are. Others are resampled from the first to the last wavelength by steps of
- * 1 nm or, where pairs are closer, of half their least distance (at most SAMPLES_MAX steps); between the samples the table
- * is then linear again, so a kink is off by less than one step. */
+ * Pairs that stand evenly are taken as they are. Others are resampled from the first to the last wavelength by steps
+ * of 1 nm or, where pairs are closer, of half their least distance (at most SAMPLES_MAX steps); between the samples
+ * the table is then linear again, so a kink is off by less than one step. */
 #include "spectrum/spectrum.h"
 
 #define SAMPLES_MAX 65536
@@ -16,20 +16,22 @@ static bool make_sense(const float *lambda, const float *values, int count, stru
     }
     for (int i = 0; i < count; ++i) {
         if (!isfinite(lambda[i]) || lambda[i] <= 0 || !isfinite(values[i])) {
-            sr_fail(error, SR_ERROR_INPUT, "pair %d of a spectrum is (%g nm, %g): wavelengths are positive, and both are finite numbers",
+            sr_fail(error, SR_ERROR_INPUT,
+                    "pair %d of a spectrum is (%g nm, %g): wavelengths are positive, and both are finite numbers",
                     i + 1, (double)lambda[i], (double)values[i]);
             return false;
         }
         if (i > 0 && !(lambda[i] > lambda[i - 1])) {
-            sr_fail(error, SR_ERROR_INPUT, "the wavelengths of a spectrum must increase, but %g nm comes after %g nm", (double)lambda[i],
-                    (double)lambda[i - 1]);
+            sr_fail(error, SR_ERROR_INPUT, "the wavelengths of a spectrum must increase, but %g nm comes after %g nm",
+                    (double)lambda[i], (double)lambda[i - 1]);
             return false;
         }
     }
     return true;
 }
 
-struct sr_spd sr_spd_from_samples(struct sr_arena *arena, const float *lambda, const float *values, int count, struct sr_error *error)
+struct sr_spd sr_spd_from_samples(struct sr_arena *arena, const float *lambda, const float *values, int count,
+                                  struct sr_error *error)
 {
     const struct sr_spd none = {.kind = SR_SPD_NONE};
     if (!make_sense(lambda, values, count, error))

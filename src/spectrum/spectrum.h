@@ -82,7 +82,8 @@ struct sr_wavelengths {
 };
 
 /* Stratified wavelengths: u moves all of them together by a lattice rotation; density proportional to
- * sech^2(0.0072 (lambda - 538)) on the range (Radziszewski et al. 2009), which follows the observer. */
+ * sech^2(0.0072 (lambda - 538)) on the range (Radziszewski et al. 2009), which follows the observer. u in [0, 1),
+ * range.lo < range.hi. */
 struct sr_wavelengths sr_wavelengths_sample(struct sr_lambda_range range, float u);
 /* After dispersion only the first wavelength goes on, with 1/SR_LAMBDA_COUNT of its density. Idempotent. */
 void sr_wavelengths_terminate_secondary(struct sr_wavelengths *w);
@@ -125,7 +126,7 @@ struct sr_spd {
 
 sr_spectrum sr_spd_eval(const struct sr_spd *s, sr_spectrum lambda);
 float sr_spd_at(const struct sr_spd *s, float lambda); // one wavelength [nm]
-float sr_spd_max(const struct sr_spd *s);              // over the observer's range
+float sr_spd_max(const struct sr_spd *s);              // over the observer's range; ILLUMINANT: of samples by 1 nm
 static inline bool sr_spd_is_constant(const struct sr_spd *s)
 {
     return s->kind == SR_SPD_CONSTANT;
@@ -133,12 +134,15 @@ static inline bool sr_spd_is_constant(const struct sr_spd *s)
 sr_spectrum sr_sigmoid_eval(struct sr_sigmoid c, sr_spectrum lambda);
 
 struct sr_spd sr_spd_constant(float value);
-/* (lambda, value) pairs, strictly increasing in lambda; linear between them, zero outside (as pbrt). Resampled to an even
- * table of 1 nm (finer where the pairs are closer). NULL table and an error when they make no sense. */
-struct sr_spd sr_spd_from_samples(struct sr_arena *arena, const float *lambda, const float *values, int count, struct sr_error *error);
+/* (lambda, value) pairs, two or more, strictly increasing in lambda; linear between them, zero outside (as pbrt). Even
+ * pairs are kept as they are, others resampled to an even table of 1 nm (finer where the pairs are closer). NULL table
+ * and an error when they make no sense. */
+struct sr_spd sr_spd_from_samples(struct sr_arena *arena, const float *lambda, const float *values, int count,
+                                  struct sr_error *error);
 /* Planck's law normalised to a maximum of 1. T in kelvin. */
 struct sr_spd sr_spd_blackbody(float T);
-/* One of pbrt's names ("metal-Cu-eta", "stdillum-D65", "glass-BK7", …), their aliases, or our own. Kind NONE if unknown. */
+/* One of pbrt's names ("metal-Cu-eta", "stdillum-D65", "glass-BK7", …), their aliases, or our own. Kind NONE if unknown.
+ * Illuminants are scaled as their sources print them, about 100; pbrt's "stdillum-D50" is not CIE's, "illum-cieD50" is. */
 struct sr_spd sr_spd_named(const char *name);
 const char *sr_spd_name(int i); // the i-th known name, or NULL past the end
 

@@ -3,20 +3,21 @@
  *
  *     p(lambda) ~ sech^2(a (lambda - b)),   a = 0.0072 / nm,   b = 538 nm           [1/nm]
  *
- * With e(lambda) = exp(2 a (lambda - b)) the distribution function is e / (1 + e), so for a range lo … hi and u in [0, 1)
+ * With e(lambda) = exp(2 a (lambda - b)) the distribution function is e / (1 + e), so for a range lo … hi and u in
+ * [0, 1)
  *
  *     lambda = lo + log(1 + delta) / (2 a),   delta = u d (1 + e_lo) / (1 + e_hi - u d e_lo),   d = e_hi / e_lo - 1
  *     p(lambda) = 2 a (1 + delta) (1 + e_lo) (1 + e_hi) / (d (1 + e_lo (1 + delta))^2)
  *
  * which loses no digits in narrow ranges or in the tails. Lane i takes u + i / SR_LAMBDA_COUNT mod 1.
  * M. Radziszewski, K. Boryczko, W. Alda, An improved technique for full spectral rendering, 2009.
- * Ranges must be of positive width. Beyond 3000 nm the density has all but vanished: e is held there, so that the result
- * stays finite. */
+ * Ranges must be of positive width. Beyond 3000 nm the density has all but vanished: e is held there, so that the
+ * result stays finite. */
 #include "spectrum/spectrum.h"
 
-#define SLOPE 0.0144f  // 2 a [1/nm]
-#define CENTRE 538.0f  // b [nm]
-#define TAIL 36.0f     // largest exponent
+#define SLOPE 0.0144f // 2 a [1/nm]
+#define CENTRE 538.0f // b [nm]
+#define TAIL 36.0f    // largest exponent
 
 // natural logarithm of w >= 1; absolute error < 1e-7 max(1, log w)
 static sr_spectrum logarithm(sr_spectrum w)

@@ -3,9 +3,9 @@
  *
  *     s(t) = 1/2 + x / (2 sqrt(1 + x^2)),   x = a t^2 + b t + c,   t = (lambda - 360 nm) / 470 nm
  *
- * For each RGB of a grid it seeks a, b, c such that the colour of s under the space's illuminant is RGB: Gauss-Newton on
- * the difference in CIELAB, by 1 nm sums over the CIE 1931 observer. The grid: which component is largest; that component
- * z at knots smoothstep(smoothstep(k / 63)); the other two divided by z at 64 even knots.
+ * For each RGB of a grid it seeks a, b, c such that the colour of s under the space's illuminant is RGB:
+ * Gauss-Newton on the difference in CIELAB, by 1 nm sums over the CIE 1931 observer. The grid: which component is
+ * largest; that component z at knots smoothstep(smoothstep(k / 63)); the other two divided by z at 64 even knots.
  * W. Jakob and J. Hanika, A Low-Dimensional Function Space for Efficient Spectral Upsampling, 2019.
  *
  * Colours that no reflectance can have end at the nearest the method finds, with |a|, |b|, |c| <= 200. */
@@ -17,11 +17,11 @@
 #include <string.h>
 
 #define LANES 8
-#define BLOCKS 59          // 59 * 8 = 472 >= 471 wavelengths
-#define LIMIT 200.0        // of the coefficients: the edge of a spectrum is then about 2 nm wide
-#define GOOD 1e-8          // [ΔE^2] squared difference that counts as none
+#define BLOCKS 59   // 59 * 8 = 472 >= 471 wavelengths
+#define LIMIT 200.0 // of the coefficients: the edge of a spectrum is then about 2 nm wide
+#define GOOD 1e-8   // [ΔE^2] squared difference that counts as none
 #define ITERATIONS 30
-#define START 32           // the brightness knot where each column begins
+#define START 32 // the brightness knot where each column begins
 
 typedef float lanes __attribute__((vector_size(LANES * sizeof(float))));
 
@@ -36,10 +36,10 @@ struct problem {
 };
 
 struct fit {
-    double c[3];          // a, b, c
-    double lab[3];        // of the spectrum's colour
+    double c[3];   // a, b, c
+    double lab[3]; // of the spectrum's colour
     double jacobian[3][3];
-    double error;         // [ΔE^2]
+    double error; // [ΔE^2]
 };
 
 static double smoothstep(double x)
@@ -71,19 +71,22 @@ static void cielab(const double white[3], const double xyz[3], double lab[3], do
     lab[0] = 116 * f[1] - 16;
     lab[1] = 500 * (f[0] - f[1]);
     lab[2] = 200 * (f[1] - f[2]);
-    double D[3][3] = {{0, 116 * slope[1], 0}, {500 * slope[0], -500 * slope[1], 0}, {0, 200 * slope[1], -200 * slope[2]}};
+    double D[3][3] = {
+        {0, 116 * slope[1], 0}, {500 * slope[0], -500 * slope[1], 0}, {0, 200 * slope[1], -200 * slope[2]}};
     memcpy(d, D, sizeof(D));
 }
 
 static double sum(lanes v)
 {
-    return ((double)v[0] + (double)v[4]) + ((double)v[1] + (double)v[5]) + (((double)v[2] + (double)v[6]) + ((double)v[3] + (double)v[7]));
+    return ((double)v[0] + (double)v[4]) + ((double)v[1] + (double)v[5]) +
+           (((double)v[2] + (double)v[6]) + ((double)v[3] + (double)v[7]));
 }
 
 // colour of the spectrum, its derivatives by a, b, c, and the distance to the target
 static void look(const struct problem *p, const double target[3], struct fit *fit)
 {
-    lanes zero = {0}, xyz[3] = {zero, zero, zero}, d[3][3] = {{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}};
+    lanes zero = {0}, xyz[3] = {zero, zero, zero},
+          d[3][3] = {{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}};
     lanes a = zero + (float)fit->c[0], b = zero + (float)fit->c[1], c = zero + (float)fit->c[2];
     for (int i = 0; i < BLOCKS; ++i) {
         lanes t = p->t[i];
@@ -113,7 +116,8 @@ static void look(const struct problem *p, const double target[3], struct fit *fi
     for (int i = 0; i < 3; ++i) {
         fit->error += (target[i] - fit->lab[i]) * (target[i] - fit->lab[i]);
         for (int j = 0; j < 3; ++j)
-            fit->jacobian[i][j] = lab_by_xyz[i][0] * by[0][j] + lab_by_xyz[i][1] * by[1][j] + lab_by_xyz[i][2] * by[2][j];
+            fit->jacobian[i][j] =
+                lab_by_xyz[i][0] * by[0][j] + lab_by_xyz[i][1] * by[1][j] + lab_by_xyz[i][2] * by[2][j];
     }
 }
 

@@ -78,7 +78,8 @@ TEST(white_balance_takes_white_to_white)
     double m[3][3], back[3][3];
     sr_white_balance(a, d65, m);
     sr_white_balance(d65, a, back);
-    double from[3] = {a[0] / a[1], 1, (1 - a[0] - a[1]) / a[1]}, to[3] = {d65[0] / d65[1], 1, (1 - d65[0] - d65[1]) / d65[1]};
+    double from[3] = {a[0] / a[1], 1, (1 - a[0] - a[1]) / a[1]},
+           to[3] = {d65[0] / d65[1], 1, (1 - d65[0] - d65[1]) / d65[1]};
     for (int i = 0; i < 3; ++i) {
         EXPECT_NEAR(m[i][0] * from[0] + m[i][1] * from[1] + m[i][2] * from[2], to[i], 1e-12);
         for (int j = 0; j < 3; ++j) {
@@ -89,8 +90,10 @@ TEST(white_balance_takes_white_to_white)
         }
     }
     // Lindbloom's published Bradford matrix from D65 to D50
-    static const double published[3][3] = {{1.0478112, 0.0228866, -0.0501270}, {0.0295424, 0.9904844, -0.0170491}, {-0.0092345, 0.0150436, 0.7521316}};
-    const double x65[2] = {0.95047 / (0.95047 + 1 + 1.08883), 1 / (0.95047 + 1 + 1.08883)}, x50[2] = {0.96422 / (0.96422 + 1 + 0.82521), 1 / (0.96422 + 1 + 0.82521)};
+    static const double published[3][3] = {
+        {1.0478112, 0.0228866, -0.0501270}, {0.0295424, 0.9904844, -0.0170491}, {-0.0092345, 0.0150436, 0.7521316}};
+    const double x65[2] = {0.95047 / (0.95047 + 1 + 1.08883), 1 / (0.95047 + 1 + 1.08883)},
+                 x50[2] = {0.96422 / (0.96422 + 1 + 0.82521), 1 / (0.96422 + 1 + 0.82521)};
     sr_white_balance(x65, x50, m);
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)

@@ -46,11 +46,14 @@ struct illuminant_case {
 
 TEST(standard_illuminants_have_their_chromaticities)
 {
-    // A comes from the CIE formula, the catalogue's I7.A from a table with six digits: the practical bound is used there
+    // A comes from the CIE formula, the catalogue's I7.A from a table of 5 nm: the practical bound is used there
     static const struct illuminant_case cases[] = {
-        {"stdillum-A", 0.44756076888, 0.407431233766, 109.849400779, 35.5907906259, 109.84899315, 35.5824734011, 2e-5, 0.01},                   // I7.A
-        {"stdillum-D65", 0.312726932468, 0.329023221548, 95.0470702331, 108.882845502, 95.0429669488, 108.880054204, 0.31e-6, 95e-6},           // I7.D65
-        {"stdillum-D50", 0.336805575569, 0.357981649164, 94.0845924243, 85.2593354939, 94.0788779913, 85.2578089913, 0.33e-6, 85e-6},           // I7.D50
+        {"stdillum-A", 0.44756076888, 0.407431233766, 109.849400779, 35.5907906259, 109.84899315, 35.5824734011, 2e-5,
+         0.01}, // I7.A
+        {"stdillum-D65", 0.312726932468, 0.329023221548, 95.0470702331, 108.882845502, 95.0429669488, 108.880054204,
+         0.31e-6, 95e-6}, // I7.D65
+        {"stdillum-D50", 0.336805575569, 0.357981649164, 94.0845924243, 85.2593354939, 94.0788779913, 85.2578089913,
+         0.33e-6, 85e-6}, // I7.D50
     };
     for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); ++i) {
         const struct illuminant_case *c = &cases[i];
@@ -91,9 +94,10 @@ TEST(illuminant_a_follows_its_formula)
 
 TEST(photometry_of_lines)
 {
-    EXPECT_RELATIVE(683.0 * sr_luminous_efficiency(555), 683.0, 1e-6);                        // I12
-    EXPECT_RELATIVE(1e-3 * 683.0 * sr_luminous_efficiency(532), 0.6044293192, 1e-6);          // I12b
-    EXPECT_RELATIVE(683.0 / sr_luminous_efficiency(299792458.0 / 1.00027726 / 540e12 * 1e9), 683.001565986, 1e-6); // I12c, standard air
+    EXPECT_RELATIVE(683.0 * sr_luminous_efficiency(555), 683.0, 1e-6);               // I12
+    EXPECT_RELATIVE(1e-3 * 683.0 * sr_luminous_efficiency(532), 0.6044293192, 1e-6); // I12b
+    EXPECT_RELATIVE(683.0 / sr_luminous_efficiency(299792458.0 / 1.00027726 / 540e12 * 1e9), 683.001565986,
+                    1e-6); // I12c, standard air
     EXPECT_NEAR(sr_luminous_efficiency(359.9), 0, 0);
     EXPECT_NEAR(sr_luminous_efficiency(830.1), 0, 0);
     EXPECT(sr_luminous_efficiency(830) > 0);
@@ -147,9 +151,10 @@ TEST(colour_checker_under_d65)
         int patch; // column of the table
         double X, Y, Z;
     } cases[] = {
-        {1, 11.1469, 10.0775, 6.8055},   {2, 37.2069, 34.5980, 25.2608},  {4, 10.5978, 13.3081, 6.9527}, {7, 37.1302, 29.6839, 6.3449},
-        {13, 7.9663, 6.1396, 28.2167},   {15, 19.6231, 11.7537, 5.0282},  {16, 56.0328, 59.3643, 9.3246}, {18, 14.6594, 19.9786, 39.2748},
-        {19, 86.2154, 91.2349, 95.3085}, {22, 18.0713, 19.1279, 20.8696}, {24, 3.0525, 3.2008, 3.5399},
+        {1, 11.1469, 10.0775, 6.8055},   {2, 37.2069, 34.5980, 25.2608},  {4, 10.5978, 13.3081, 6.9527},
+        {7, 37.1302, 29.6839, 6.3449},   {13, 7.9663, 6.1396, 28.2167},   {15, 19.6231, 11.7537, 5.0282},
+        {16, 56.0328, 59.3643, 9.3246},  {18, 14.6594, 19.9786, 39.2748}, {19, 86.2154, 91.2349, 95.3085},
+        {22, 18.0713, 19.1279, 20.8696}, {24, 3.0525, 3.2008, 3.5399},
     };
     FILE *file = fopen(test_reference_file("spectra/colour_science_io/babelcolor_average.csv"), "r");
     EXPECT(file != NULL);
@@ -184,7 +189,8 @@ TEST(colour_checker_under_d65)
             double bar[3];
             sr_observer_1931(l, bar);
             for (int k = 0; k < 3; ++k)
-                xyz[k] += 100 / white * bar[k] * (double)sr_spd_at(&d65, (float)l) * (double)sr_spd_at(&patch, (float)l);
+                xyz[k] +=
+                    100 / white * bar[k] * (double)sr_spd_at(&d65, (float)l) * (double)sr_spd_at(&patch, (float)l);
         }
         // the catalogue gives four decimals
         EXPECT_NEAR(xyz[0], cases[i].X, 1e-4);

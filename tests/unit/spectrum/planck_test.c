@@ -16,18 +16,19 @@ static double integral(double T, double lo, double hi)
 
 TEST(planck_values)
 {
-    EXPECT_RELATIVE(sr_planck(555, 2856), 258.476928115, 1e-9);       // I2.2856
-    EXPECT_RELATIVE(sr_planck(500, 5778), 26375.6698666, 1e-9);       // I2.5778
-    EXPECT_RELATIVE(sr_planck(10000, 300), 0.00992403333007, 1e-9);   // I2.300
+    EXPECT_RELATIVE(sr_planck(555, 2856), 258.476928115, 1e-9);     // I2.2856
+    EXPECT_RELATIVE(sr_planck(500, 5778), 26375.6698666, 1e-9);     // I2.5778
+    EXPECT_RELATIVE(sr_planck(10000, 300), 0.00992403333007, 1e-9); // I2.300
 }
 
 TEST(planck_integrates_to_stefan_boltzmann)
 {
     double all = integral(5778, 50, 1e7);
-    EXPECT_RELATIVE(all, 20117407.54, 1e-8);                                              // I3
-    EXPECT_RELATIVE(3.14159265358979 * all / pow(5778, 4), 5.67037441918e-8, 1e-8);       // I1
-    EXPECT_RELATIVE(integral(2856, 400, 700) / (5.67037441918e-8 * pow(2856, 4) / 3.14159265358979), 0.0652716939857, 1e-9); // I5.2856
-    EXPECT_RELATIVE(integral(5778, 400, 700) / all, 0.366659443156, 1e-8);                // I5.5778
+    EXPECT_RELATIVE(all, 20117407.54, 1e-8);                                        // I3
+    EXPECT_RELATIVE(3.14159265358979 * all / pow(5778, 4), 5.67037441918e-8, 1e-8); // I1
+    EXPECT_RELATIVE(integral(2856, 400, 700) / (5.67037441918e-8 * pow(2856, 4) / 3.14159265358979), 0.0652716939857,
+                    1e-9);                                                 // I5.2856
+    EXPECT_RELATIVE(integral(5778, 400, 700) / all, 0.366659443156, 1e-8); // I5.5778
 }
 
 TEST(planck_peaks_where_wien_says)
@@ -42,7 +43,8 @@ TEST(planck_peaks_where_wien_says)
 
 TEST(planckian_locus_and_efficacy)
 {
-    static const double cases[2][3] = {{2856, 0.447535144304, 0.407428289726}, {6500, 0.313525880402, 0.323628304672}}; // I10
+    static const double cases[2][3] = {{2856, 0.447535144304, 0.407428289726},
+                                       {6500, 0.313525880402, 0.323628304672}}; // I10
     for (int i = 0; i < 2; ++i) {
         double exact[3] = {0};
         for (int l = 360; l <= 830; ++l) {
@@ -59,8 +61,9 @@ TEST(planckian_locus_and_efficacy)
         EXPECT_RELATIVE(xyz[0] / (xyz[0] + xyz[1] + xyz[2]), cases[i][1], 1e-6);
         EXPECT_RELATIVE(xyz[1] / (xyz[0] + xyz[1] + xyz[2]), cases[i][2], 1e-6);
         if (i == 0) {
-            EXPECT_RELATIVE(683 * exact[1], 19749726.1611, 1e-6);                                                           // I11b
-            EXPECT_RELATIVE(683.002 * exact[1] / (5.67037441918e-8 * pow(2856, 4) / 3.14159265358979), 16.4462797642, 1e-6); // I11
+            EXPECT_RELATIVE(683 * exact[1], 19749726.1611, 1e-6); // I11b
+            EXPECT_RELATIVE(683.002 * exact[1] / (5.67037441918e-8 * pow(2856, 4) / 3.14159265358979), 16.4462797642,
+                            1e-6); // I11
         }
     }
 }

@@ -53,7 +53,8 @@ static void solid_of(const struct sr_colour_space *space, struct solid *solid)
         for (int k = 0; k < 3; ++k)
             solid->centre[k] += bar[k] * power / 2;
         for (int d = 0; d < DIRECTIONS; ++d)
-            solid->support[d] += power * fmax(0, bar[0] * solid->n[d][0] + bar[1] * solid->n[d][1] + bar[2] * solid->n[d][2]);
+            solid->support[d] +=
+                power * fmax(0, bar[0] * solid->n[d][0] + bar[1] * solid->n[d][1] + bar[2] * solid->n[d][2]);
     }
 }
 
@@ -98,7 +99,7 @@ static void round_trip(enum sr_colour_space_id id, double reachable)
 
 TEST(albedos_come_back_where_a_reflectance_can_have_that_colour)
 {
-    // optimal colours have spectra of vertical edges; the sigmoid's are slanted, so the outermost shell stays out of reach
+    // optimal colours have spectra of vertical edges, the sigmoid's are slanted: the outermost shell is out of its reach
     round_trip(SR_SRGB, 1);
     round_trip(SR_DCI_P3, 0.9);
     round_trip(SR_REC2020, 0.9);

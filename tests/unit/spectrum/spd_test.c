@@ -28,8 +28,12 @@ TEST(exp_is_accurate_everywhere)
 TEST(lanes_agree_with_single_wavelengths)
 {
     struct sr_spd all[] = {
-        sr_spd_constant(0.3f), sr_spd_named("metal-Au-k"), sr_spd_from_rgb_albedo(SR_SRGB, (struct sr_rgb){0.2f, 0.7f, 0.1f}),
-        sr_spd_from_rgb_illuminant(SR_REC2020, (struct sr_rgb){3, 1, 2}), sr_spd_blackbody(4000), {.kind = SR_SPD_NONE},
+        sr_spd_constant(0.3f),
+        sr_spd_named("metal-Au-k"),
+        sr_spd_from_rgb_albedo(SR_SRGB, (struct sr_rgb){0.2f, 0.7f, 0.1f}),
+        sr_spd_from_rgb_illuminant(SR_REC2020, (struct sr_rgb){3, 1, 2}),
+        sr_spd_blackbody(4000),
+        {.kind = SR_SPD_NONE},
     };
     for (size_t i = 0; i < sizeof(all) / sizeof(all[0]); ++i) {
         struct sr_wavelengths w = sr_wavelengths_sample((struct sr_lambda_range){300, 900}, 0.11f * (float)i);
@@ -55,7 +59,8 @@ TEST(sigmoid_is_bounded_and_its_maximum_is_found)
             EXPECT(at >= 0 && at <= 1);
             max = fmaxf(max, at);
         }
-        EXPECT(sr_spd_max(&s) >= max - 1e-5f && sr_spd_max(&s) <= max + 0.02f); // c0, c1, c2 cancel: x has about 5 digits
+        EXPECT(sr_spd_max(&s) >= max - 1e-5f &&
+               sr_spd_max(&s) <= max + 0.02f); // c0, c1, c2 cancel: x has about 5 digits
     }
     struct sr_sigmoid c = {1e-4f, -0.11f, 28};
     double x = (1e-4 * 517 - 0.11) * 517 + 28;
@@ -125,11 +130,13 @@ TEST(samples_that_make_no_sense_are_refused)
 TEST(named_spectra_resolve)
 {
     static const char *const pbrt[] = {
-        "glass-BK7", "glass-BAF10", "glass-FK51A", "glass-LASF9", "glass-F5", "glass-F10", "glass-F11", "metal-Ag-eta", "metal-Ag-k",
-        "metal-Al-eta", "metal-Al-k", "metal-Au-eta", "metal-Au-k", "metal-Cu-eta", "metal-Cu-k", "metal-CuZn-eta", "metal-CuZn-k",
-        "metal-MgO-eta", "metal-MgO-k", "metal-TiO2-eta", "metal-TiO2-k", "stdillum-A", "stdillum-D50", "stdillum-D65", "stdillum-E",
-        "stdillum-F1", "stdillum-F2", "stdillum-F3", "stdillum-F4", "stdillum-F5", "stdillum-F6", "stdillum-F7", "stdillum-F8",
-        "stdillum-F9", "stdillum-F10", "stdillum-F11", "stdillum-F12", "illum-acesD60", "illum-cieD50", "glass-SF5", "glass-SF10", "glass-SF11",
+        "glass-BK7",    "glass-BAF10",    "glass-FK51A",  "glass-LASF9",    "glass-F5",     "glass-F10",
+        "glass-F11",    "metal-Ag-eta",   "metal-Ag-k",   "metal-Al-eta",   "metal-Al-k",   "metal-Au-eta",
+        "metal-Au-k",   "metal-Cu-eta",   "metal-Cu-k",   "metal-CuZn-eta", "metal-CuZn-k", "metal-MgO-eta",
+        "metal-MgO-k",  "metal-TiO2-eta", "metal-TiO2-k", "stdillum-A",     "stdillum-D50", "stdillum-D65",
+        "stdillum-E",   "stdillum-F1",    "stdillum-F2",  "stdillum-F3",    "stdillum-F4",  "stdillum-F5",
+        "stdillum-F6",  "stdillum-F7",    "stdillum-F8",  "stdillum-F9",    "stdillum-F10", "stdillum-F11",
+        "stdillum-F12", "illum-acesD60",  "illum-cieD50", "glass-SF5",      "glass-SF10",   "glass-SF11",
     };
     int count = 0;
     while (sr_spd_name(count))
@@ -153,21 +160,24 @@ TEST(materials_have_their_published_values)
     static const struct {
         const char *name;
         double n_d, abbe;
-    } glasses[] = {{"glass-BK7", 1.51680, 64.17},  {"glass-BAF10", 1.67003, 47.11}, {"glass-FK51A", 1.48656, 84.47}, {"glass-LASF9", 1.85025, 32.17},
-                   {"glass-F5", 1.67271, 32.25},   {"glass-F10", 1.72828, 28.53},   {"glass-SF11", 1.78472, 25.68}};
+    } glasses[] = {{"glass-BK7", 1.51680, 64.17},   {"glass-BAF10", 1.67003, 47.11}, {"glass-FK51A", 1.48656, 84.47},
+                   {"glass-LASF9", 1.85025, 32.17}, {"glass-F5", 1.67271, 32.25},    {"glass-F10", 1.72828, 28.53},
+                   {"glass-SF11", 1.78472, 25.68}};
     for (size_t i = 0; i < sizeof(glasses) / sizeof(glasses[0]); ++i) {
         struct sr_spd s = sr_spd_named(glasses[i].name);
         double n_d = (double)sr_spd_at(&s, 587.5618f);
         EXPECT_NEAR(n_d, glasses[i].n_d, 1e-5);
-        EXPECT_NEAR((n_d - 1) / ((double)sr_spd_at(&s, 486.1327f) - (double)sr_spd_at(&s, 656.2725f)), glasses[i].abbe, 0.02);
+        EXPECT_NEAR((n_d - 1) / ((double)sr_spd_at(&s, 486.1327f) - (double)sr_spd_at(&s, 656.2725f)), glasses[i].abbe,
+                    0.02);
     }
     static const struct {
         const char *name;
         float lambda;
         double value;
-    } metals[] = {{"metal-Cu-eta", 563.564453f, 0.826},  {"metal-Cu-k", 652.548279f, 3.67},   {"metal-MgO-eta", 589.258972f, 1.73737},
-                  {"metal-TiO2-eta", 520.049988f, 3.0},  {"metal-CuZn-eta", 500, 0.686},      {"metal-CuZn-k", 655, 3.7365},
-                  {"metal-Cu-eta", 360, 1.2803835},      {"metal-MgO-eta", 829, 1.72872}};
+    } metals[] = {{"metal-Cu-eta", 563.564453f, 0.826},    {"metal-Cu-k", 652.548279f, 3.67},
+                  {"metal-MgO-eta", 589.258972f, 1.73737}, {"metal-TiO2-eta", 520.049988f, 3.0},
+                  {"metal-CuZn-eta", 500, 0.686},          {"metal-CuZn-k", 655, 3.7365},
+                  {"metal-Cu-eta", 360, 1.2803835},        {"metal-MgO-eta", 829, 1.72872}};
     for (size_t i = 0; i < sizeof(metals) / sizeof(metals[0]); ++i) {
         struct sr_spd s = sr_spd_named(metals[i].name);
         EXPECT_NEAR(sr_spd_at(&s, metals[i].lambda), metals[i].value, 3e-3); // tables of 1 nm cut kinks

@@ -4,7 +4,8 @@
 #include "spectrum/spectrum.h"
 #include "test.h"
 
-static const struct sr_lambda_range ranges[] = {{360, 830}, {380, 780}, {549, 551}, {300, 2500}, {700, 1100}, {250, 400}, {632.7f, 632.9f}};
+static const struct sr_lambda_range ranges[] = {{360, 830},  {380, 780}, {549, 551},      {300, 2500},
+                                                {700, 1100}, {250, 400}, {632.7f, 632.9f}};
 #define RANGES (sizeof(ranges) / sizeof(ranges[0]))
 
 // share of the sech^2 law between lo and x
@@ -22,7 +23,8 @@ TEST(wavelengths_have_the_density_they_claim)
             struct sr_wavelengths w = sr_wavelengths_sample(ranges[k], u);
             for (int j = 0; j < SR_LAMBDA_COUNT; ++j) {
                 double lambda = (double)w.lambda[j], c = cosh(0.0072 * (lambda - 538));
-                double width = tanh(0.0072 * ((double)ranges[k].hi - 538)) - tanh(0.0072 * ((double)ranges[k].lo - 538));
+                double width =
+                    tanh(0.0072 * ((double)ranges[k].hi - 538)) - tanh(0.0072 * ((double)ranges[k].lo - 538));
                 double v = fmod((double)u + j / (double)SR_LAMBDA_COUNT, 1);
                 EXPECT(w.lambda[j] >= ranges[k].lo && w.lambda[j] <= ranges[k].hi);
                 // an ulp of a wavelength moves the density by up to 2 a ulp = 3.5e-6 (beyond 2048 nm)
@@ -56,7 +58,8 @@ TEST(wavelengths_follow_their_density)
 
 TEST(wavelengths_are_stratified_and_finite_at_the_ends)
 {
-    struct sr_wavelengths first = sr_wavelengths_sample(ranges[0], 0), last = sr_wavelengths_sample(ranges[0], SR_ONE_MINUS_EPSILON);
+    struct sr_wavelengths first = sr_wavelengths_sample(ranges[0], 0),
+                          last = sr_wavelengths_sample(ranges[0], SR_ONE_MINUS_EPSILON);
     EXPECT_NEAR(first.lambda[0], 360, 0);
     EXPECT_NEAR(last.lambda[0], 830, 1e-3);
     for (int j = 1; j < SR_LAMBDA_COUNT; ++j)
@@ -64,7 +67,8 @@ TEST(wavelengths_are_stratified_and_finite_at_the_ends)
     // far infrared: the density has vanished there, but nothing may break
     struct sr_wavelengths far = sr_wavelengths_sample((struct sr_lambda_range){8000, 14000}, 0.7f);
     for (int j = 0; j < SR_LAMBDA_COUNT; ++j)
-        EXPECT(isfinite(far.lambda[j]) && far.lambda[j] >= 8000 && far.lambda[j] <= 14000 && isfinite(far.pdf[j]) && far.pdf[j] > 0);
+        EXPECT(isfinite(far.lambda[j]) && far.lambda[j] >= 8000 && far.lambda[j] <= 14000 && isfinite(far.pdf[j]) &&
+               far.pdf[j] > 0);
 }
 
 TEST(wavelengths_end_once)
