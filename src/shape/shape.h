@@ -73,6 +73,25 @@ struct sr_shape_patches {
     struct sr_slice indices; // int32, four a patch
     struct sr_slice P, N, uv, face_indices;
     bool flip_normals;
+    const uint8_t *kinds; // derived, one a patch: what it is geometrically, which chooses how it is sampled
+};
+
+/* Parallelograms whose uv and N are affine too (or absent) are the same surface as two triangles, and a ray caster meets
+ * triangles faster. Before `prepare`: such patches are written to `triangles` (two each, in order, with vertices of their
+ * own, uv (0,0) (1,0) (0,1) (1,1) where the patches had none, and the patch's face index), the others stay in `rest`.
+ * Position, normals, uv and derivatives are equal to rounding. Area lights had better stay patches: a rectangle is sampled
+ * as one, by solid angle. Returns the number of patches moved; UINT32_MAX: no memory. Indices must be in range. */
+uint32_t sr_shape_split_planar_quads(const struct sr_shape_patches *patches, struct sr_arena *arena,
+                                     struct sr_shape_mesh *triangles, struct sr_shape_patches *rest);
+
+/* ---- quadrics ----
+ * They live in object space in double and are placed by an affine transform. Outside is away from the axis or centre (disk:
+ * +z of the object), transformed as a normal; a mirror leaves it outside, reverse_orientation turns it. A partial quadric
+ * is sampled exactly where it exists. Hit coordinates: sphere, octahedral direction; disk, object x and y; cylinder, u and v. */
+struct sr_shape_quadric {
+    double to_world[3][4], to_object[3][4]; // [1], last column [m]
+    double determinant;                     // [1] |det| of the linear part
+    double side;                            // [1] -1: outside is reversed
 };
 struct sr_shape_sphere {
     float radius, z_min, z_max; // [m]
@@ -83,18 +102,21 @@ struct sr_shape_sphere {
     bool is_full, is_rigid;                      // a full sphere; the transform keeps it a sphere: then centre and
     sr_vec3 centre;                              // [m] in the world
     float world_radius;                          // [m]
+    struct sr_shape_quadric quadric;             // derived, as in all three
 };
 struct sr_shape_disk {
     float height, radius, inner_radius, phi_max; // [m] [m] [m] [deg]
     struct sr_transform object_to_world;
     bool flip_normals;
-    float phi_max_rad;
+    float phi_max_rad; // derived [rad]
+    struct sr_shape_quadric quadric;
 };
 struct sr_shape_cylinder {
     float radius, z_min, z_max, phi_max; // [m] [m] [m] [deg]
     struct sr_transform object_to_world;
     bool flip_normals;
-    float phi_max_rad;
+    float phi_max_rad; // derived [rad]
+    struct sr_shape_quadric quadric;
 };
 extern const struct sr_shape_model sr_shape_trianglemesh, sr_shape_bilinearmesh, sr_shape_sphere, sr_shape_disk, sr_shape_cylinder;
 

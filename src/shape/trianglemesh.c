@@ -1,0 +1,285 @@
+/* SPDX-License-Identifier: MIT */
+/* Triangles: p = b0 p0 + b1 p1 + b2 p2 [m], uv and normals likewise.
+ *
+ *     n  = (p1 - p0) x (p2 - p0) / |...|             the winding is counterclockwise seen from outside, turned if flipped;
+ *                                                    where there are N, on the side of the interpolated N instead
+ *     |error of p| <= gamma(7) SUM |b_i p_i|         [m]
+ *     du12 dpdu + dv12 dpdv = p1 - p2, and so on     solved for dpdu, dpdv [m]
+ *
+ * Sampled toward a point: uniformly in the solid angle Omega (J. Arvo 1995), times the bilinear weight of the receiver's
+ * cosine at the corners; by area, pdf = r^2 / (A |cos theta|) [1/sr], where the triangle looks small (that is cheaper and as
+ * good) or fills nearly a hemisphere. M. Pharr, W. Jakob, G. Humphreys, Physically Based Rendering, 4th ed. 2023, 6.5.
+ * A triangle without area is never sampled. */
+#include "shape/mesh.h"
+
+static const float min_solid_angle = 3e-4f, max_solid_angle = 6.22f; // [sr] within, the spherical triangle is well-conditioned
+static const float small_extent2 = 0.015f; // (longest edge / distance)^2 below which area sampling is taken at once
+
+#define T struct sr_shape_mesh
+static const struct sr_param params[] = {
+    {SR_PARAM_INTS, "indices", "1", 0, INT32_MAX, NAN, offsetof(T, indices), "three vertices a triangle; 0 1 2 if there are but three P"},
+    {SR_PARAM_POINT3S, "P", "m", -INFINITY, INFINITY, NAN, offsetof(T, P), "positions of the vertices"},
+    {SR_PARAM_NORMAL3S, "N", "1", -INFINITY, INFINITY, NAN, offsetof(T, N), "shading normals; their side is outside"},
+    {SR_PARAM_VECTOR3S, "S", "1", -INFINITY, INFINITY, NAN, offsetof(T, S), "shading tangents"},
+    {SR_PARAM_POINT2S, "uv", "1", -INFINITY, INFINITY, NAN, offsetof(T, uv), "texture coordinates"},
+    {SR_PARAM_INTS, "faceIndices", "1", 0, INT32_MAX, NAN, offsetof(T, face_indices), "number of the face that each triangle came from"},
+    {0},
+};
+#undef T
+
+static sr_status prepare(void *self, const struct sr_shape_placement *placement, struct sr_arena *arena, struct sr_error *error)
+{
+    struct sr_shape_mesh *m = self;
+    const struct sr_mesh_arrays a = {"trianglemesh", 3, &m->indices, &m->P, &m->N, &m->S, &m->uv, &m->face_indices};
+    return sr_mesh_place(&a, placement, &m->flip_normals, arena, error);
+}
+
+static uint32_t primitive_count(const void *self)
+{
+    return ((const struct sr_shape_mesh *)self)->indices.count / 3;
+}
+
+static const int32_t *corners(const struct sr_shape_mesh *m, uint32_t primitive)
+{
+    return (const int32_t *)m->indices.data + 3 * (size_t)primitive;
+}
+
+static void vertices(const struct sr_shape_mesh *m, uint32_t primitive, sr_vec3 v[3])
+{
+    const int32_t *c = corners(m, primitive);
+    const sr_vec3 *P = m->P.data;
+    for (int i = 0; i < 3; ++i)
+        v[i] = P[c[i]];
+}
+
+static struct sr_box bounds(const void *self, uint32_t primitive)
+{
+    sr_vec3 v[3];
+    vertices(self, primitive, v);
+    return sr_box_add(sr_box_add(sr_box_add(sr_box_empty(), v[0]), v[1]), v[2]);
+}
+
+static float area(const void *self, uint32_t primitive)
+{
+    sr_vec3 v[3];
+    vertices(self, primitive, v);
+    double e[3] = {(double)v[1].x - (double)v[0].x, (double)v[1].y - (double)v[0].y, (double)v[1].z - (double)v[0].z};
+    double f[3] = {(double)v[2].x - (double)v[0].x, (double)v[2].y - (double)v[0].y, (double)v[2].z - (double)v[0].z};
+    double c[3] = {e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]};
+    return (float)(0.5 * sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]));
+}
+
+static sr_vec3 blend(const sr_vec3 *a, const int32_t *c, float b0, float b1, float b2)
+{
+    return sr_add(sr_add(sr_scale(b0, a[c[0]]), sr_scale(b1, a[c[1]])), sr_scale(b2, a[c[2]]));
+}
+
+static sr_vec3 error_bound(const sr_vec3 v[3], float b0, float b1, float b2)
+{
+    const float g = 7.1f * SR_MACHINE_EPSILON; // gamma(7), rounded up
+    return (sr_vec3){g * (fabsf(b0 * v[0].x) + fabsf(b1 * v[1].x) + fabsf(b2 * v[2].x)),
+                     g * (fabsf(b0 * v[0].y) + fabsf(b1 * v[1].y) + fabsf(b2 * v[2].y)),
+                     g * (fabsf(b0 * v[0].z) + fabsf(b1 * v[1].z) + fabsf(b2 * v[2].z))};
+}
+
+/* Fills dxdu and dxdv from differences along two edges; false if the texture coordinates span no area. */
+struct slope {
+    float u02, v02, u12, v12, inverse; // differences of uv to vertex 2, one over their determinant
+};
+static void solve(const struct slope *k, sr_vec3 x02, sr_vec3 x12, sr_vec3 *dxdu, sr_vec3 *dxdv)
+{
+    *dxdu = sr_scale(k->inverse, sr_sub(sr_scale(k->v12, x02), sr_scale(k->v02, x12)));
+    *dxdv = sr_scale(k->inverse, sr_sub(sr_scale(k->u02, x12), sr_scale(k->u12, x02)));
+}
+
+static void point(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_point *x)
+{
+    const struct sr_shape_mesh *m = self;
+    const int32_t *c = corners(m, primitive);
+    const sr_vec3 *P = m->P.data;
+    const sr_vec3 v[3] = {P[c[0]], P[c[1]], P[c[2]]};
+    float b1 = hit.x, b2 = hit.y, b0 = 1 - b1 - b2;
+
+    x->p = sr_add(sr_add(sr_scale(b0, v[0]), sr_scale(b1, v[1])), sr_scale(b2, v[2]));
+    x->p_error = error_bound(v, b0, b1, b2);
+    x->face = m->face_indices.count ? ((const int32_t *)m->face_indices.data)[primitive] : 0;
+    sr_vec3 p02 = sr_sub(v[0], v[2]), p12 = sr_sub(v[1], v[2]);
+    sr_vec3 n = sr_unit_normal(sr_cross(p02, p12));
+
+    struct slope k = {-1, -1, 0, -1, 1}; // of uv (0,0) (1,0) (1,1)
+    bool has_slope = true;
+    if (m->uv.count) {
+        const sr_vec2 *uv = m->uv.data;
+        sr_vec2 t0 = uv[c[0]], t1 = uv[c[1]], t2 = uv[c[2]];
+        x->uv = (sr_vec2){b0 * t0.x + b1 * t1.x + b2 * t2.x, b0 * t0.y + b1 * t1.y + b2 * t2.y};
+        k = (struct slope){t0.x - t2.x, t0.y - t2.y, t1.x - t2.x, t1.y - t2.y, 0};
+        float determinant = sr_difference_of_products(k.u02, k.v12, k.v02, k.u12);
+        has_slope = fabsf(determinant) > 1e-9f * (fabsf(k.u02 * k.v12) + fabsf(k.v02 * k.u12)) && fabsf(determinant) > 1e-30f;
+        k.inverse = has_slope ? 1 / determinant : 0;
+    } else {
+        x->uv = (sr_vec2){b1 + b2, b2};
+    }
+    if (SR_LIKELY(has_slope)) {
+        solve(&k, p02, p12, &x->dpdu, &x->dpdv);
+    } else {
+        struct sr_frame f = sr_frame_from_z(n);
+        x->dpdu = f.x;
+        x->dpdv = f.y;
+    }
+    x->dndu = x->dndv = (sr_vec3){0, 0, 0};
+    x->dpdus = x->dpdu;
+
+    if (m->N.count) {
+        const sr_vec3 *N = m->N.data;
+        sr_vec3 s = blend(N, c, b0, b1, b2);
+        float l2 = sr_dot(s, s);
+        if (SR_LIKELY(l2 > 1e-12f)) {
+            // the unit normal's derivative is that of s, less its part along s, over |s|
+            float inverse = 1 / sqrtf(l2);
+            sr_vec3 ns = sr_scale(inverse, s);
+            x->ns = ns;
+            x->n = sr_face_forward(n, ns);
+            if (has_slope) {
+                sr_vec3 dsdu, dsdv;
+                solve(&k, sr_sub(N[c[0]], N[c[2]]), sr_sub(N[c[1]], N[c[2]]), &dsdu, &dsdv);
+                x->dndu = sr_scale(inverse, sr_mad(dsdu, -sr_dot(dsdu, ns), ns));
+                x->dndv = sr_scale(inverse, sr_mad(dsdv, -sr_dot(dsdv, ns), ns));
+            }
+        } else {
+            x->n = x->ns = m->flip_normals ? sr_neg(n) : n;
+        }
+    } else {
+        x->n = x->ns = m->flip_normals ? sr_neg(n) : n;
+    }
+    if (m->S.count) {
+        sr_vec3 s = blend(m->S.data, c, b0, b1, b2);
+        if (sr_dot(s, s) > 0)
+            x->dpdus = s;
+    }
+}
+
+static sr_vec2 uv(const void *self, uint32_t primitive, sr_vec2 hit)
+{
+    const struct sr_shape_mesh *m = self;
+    float b1 = hit.x, b2 = hit.y, b0 = 1 - b1 - b2;
+    if (!m->uv.count)
+        return (sr_vec2){b1 + b2, b2};
+    const int32_t *c = corners(m, primitive);
+    const sr_vec2 *t = m->uv.data;
+    return (sr_vec2){b0 * t[c[0]].x + b1 * t[c[1]].x + b2 * t[c[2]].x, b0 * t[c[0]].y + b1 * t[c[1]].y + b2 * t[c[2]].y};
+}
+
+/* The outside unit normal at barycentrics. */
+static sr_vec3 outside(const struct sr_shape_mesh *m, const int32_t *c, sr_vec3 n, float b0, float b1, float b2)
+{
+    if (m->N.count) {
+        sr_vec3 s = blend(m->N.data, c, b0, b1, b2);
+        if (sr_dot(s, s) > 1e-12f)
+            return sr_face_forward(n, s);
+    }
+    return m->flip_normals ? sr_neg(n) : n;
+}
+
+/* Whether the triangle is drawn by solid angle as seen from p, and if so its solid angle. The same in sample and pdf. */
+static bool by_solid_angle(const sr_vec3 v[3], sr_vec3 p, double *solid_angle)
+{
+    sr_vec3 a = sr_sub(v[0], p), b = sr_sub(v[1], p), c = sr_sub(v[2], p);
+    sr_vec3 e0 = sr_sub(v[1], v[0]), e1 = sr_sub(v[2], v[1]), e2 = sr_sub(v[0], v[2]);
+    float a2 = sr_dot(a, a), b2 = sr_dot(b, b), c2 = sr_dot(c, c);
+    float nearest2 = fminf(a2, fminf(b2, c2));
+    float extent2 = fmaxf(sr_dot(e0, e0), fmaxf(sr_dot(e1, e1), sr_dot(e2, e2)));
+    if (extent2 < small_extent2 * nearest2 || !(nearest2 > 1e-30f))
+        return false;
+    *solid_angle = sr_spherical_triangle_area(sr_scale(1 / sqrtf(a2), a), sr_scale(1 / sqrtf(b2), b), sr_scale(1 / sqrtf(c2), c));
+    return *solid_angle > (double)min_solid_angle && *solid_angle < (double)max_solid_angle;
+}
+
+/* The receiver's cosine where the square's corners (0,0) (1,0) (0,1) (1,1) go: vertices 1, 1, 0, 2. */
+static void corner_weights(const struct sr_point *reference, const sr_vec3 v[3], float w[4])
+{
+    float k[3];
+    for (int i = 0; i < 3; ++i) {
+        sr_vec3 d = sr_sub(v[i], reference->p);
+        k[i] = sr_receiver_weight(reference, d, 1 / sr_length(d));
+    }
+    w[0] = w[1] = k[1];
+    w[2] = k[0];
+    w[3] = k[2];
+}
+
+static bool sample(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec2 u, struct sr_shape_sample *s)
+{
+    const struct sr_shape_mesh *m = self;
+    const int32_t *c = corners(m, primitive);
+    sr_vec3 v[3];
+    vertices(m, primitive, v);
+    float a = area(self, primitive);
+    if (!(a > 0))
+        return false;
+
+    float b[3];
+    double solid_angle;
+    bool is_spherical = reference && by_solid_angle(v, reference->p, &solid_angle);
+    float pdf = 1 / a;
+    if (is_spherical) {
+        float pdf_warp = 1;
+        if (sr_has_normal(reference)) {
+            float w[4];
+            corner_weights(reference, v, w);
+            u = sr_warp_bilinear(u, w);
+            pdf_warp = sr_warp_bilinear_pdf(u, w);
+        }
+        sr_spherical_triangle_sample(v, reference->p, u, b, &pdf);
+        pdf *= pdf_warp;
+    } else {
+        sr_vec2 t = sr_warp_triangle(u);
+        b[0] = t.x;
+        b[1] = t.y;
+        b[2] = 1 - t.x - t.y;
+    }
+    sr_vec3 n = sr_unit_normal(sr_cross(sr_sub(v[0], v[2]), sr_sub(v[1], v[2])));
+    s->p = sr_add(sr_add(sr_scale(b[0], v[0]), sr_scale(b[1], v[1])), sr_scale(b[2], v[2]));
+    s->p_error = error_bound(v, b[0], b[1], b[2]);
+    s->n = outside(m, c, n, b[0], b[1], b[2]);
+    s->uv = uv(self, primitive, (sr_vec2){b[1], b[2]});
+    s->pdf = reference && !is_spherical ? sr_density_seen_from(reference->p, s->p, n, pdf) : pdf;
+    return s->pdf > 0 && isfinite(s->pdf);
+}
+
+static float pdf(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there)
+{
+    sr_vec3 v[3];
+    vertices(self, primitive, v);
+    double solid_angle;
+    if (!by_solid_angle(v, reference->p, &solid_angle)) {
+        float a = area(self, primitive);
+        return a > 0 ? sr_density_seen_from(reference->p, there->p, there->n, 1 / a) : 0;
+    }
+    float pdf_warp = 1;
+    if (sr_has_normal(reference)) {
+        float w[4];
+        corner_weights(reference, v, w);
+        pdf_warp = sr_warp_bilinear_pdf(sr_spherical_triangle_invert(v, reference->p, wi), w);
+    }
+    return pdf_warp / (float)solid_angle;
+}
+
+/* The flat normal; where shading normals of the corners disagree about its side, all directions. */
+static void normals(const void *self, uint32_t primitive, sr_vec3 *axis, float *cos_theta)
+{
+    const struct sr_shape_mesh *m = self;
+    const int32_t *c = corners(m, primitive);
+    sr_vec3 v[3];
+    vertices(m, primitive, v);
+    sr_vec3 n = sr_unit_normal(sr_cross(sr_sub(v[0], v[2]), sr_sub(v[1], v[2])));
+    *axis = outside(m, c, n, 1, 0, 0);
+    *cos_theta = 1;
+    if (m->N.count && (sr_dot(*axis, outside(m, c, n, 0, 1, 0)) < 0 || sr_dot(*axis, outside(m, c, n, 0, 0, 1)) < 0))
+        *cos_theta = -1;
+}
+
+const struct sr_shape_model sr_shape_trianglemesh = {
+    .name = "trianglemesh", .params = params, .size = sizeof(struct sr_shape_mesh), .prepare = prepare,
+    .primitive_count = primitive_count, .bounds = bounds, .area = area, .point = point, .uv = uv,
+    .sample = sample, .pdf = pdf, .normals = normals,
+};
