@@ -4,26 +4,27 @@
 
 #include <string.h>
 
-static void record(struct sr_ray_log *log, sr_vec3 o, sr_vec3 d, float t_max, bool is_shadow)
+static void record(struct sr_ray_log *log, const struct sr_ray *ray, bool is_shadow)
 {
     if (log->count < log->capacity)
-        log->rays[log->count++] = (struct sr_logged_ray){o, d, t_max, is_shadow};
+        log->rays[log->count++] = (struct sr_logged_ray){ray->o, ray->d, ray->t_max, is_shadow};
 }
 
 bool sr_trace(const struct sr_scene *scene, const struct sr_ray *ray, struct sr_hit *hit, struct sr_worker *worker)
 {
     worker->rays += 1;
     if (SR_UNLIKELY(worker->log))
-        record(worker->log, ray->o, ray->d, ray->t_max, false);
+        record(worker->log, ray, false);
     return sr_raycast(scene, ray, hit);
 }
 
 bool sr_unoccluded(const struct sr_scene *scene, const struct sr_point *x, const struct sr_light_sample *s, struct sr_worker *worker)
 {
+    struct sr_ray segment = sr_shadow_ray(x, s);
     worker->shadow_rays += 1;
     if (SR_UNLIKELY(worker->log))
-        record(worker->log, sr_point_offset(x, s->wi), s->wi, s->distance, true);
-    return sr_visible(scene, x, s);
+        record(worker->log, &segment, true);
+    return sr_is_free(scene, &segment);
 }
 
 void sr_first_footprint(const struct sr_path_start *start, struct sr_point *x)

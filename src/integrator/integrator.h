@@ -7,16 +7,6 @@
 
 #include "scene/scene.h"
 
-/* Rays in the order in which a render asked for them, to be replayed through the bare ray caster. */
-struct sr_ray_log {
-    struct sr_logged_ray {
-        sr_vec3 o, d;
-        float t_max;
-        bool is_shadow;
-    } *rays;
-    uint64_t count, capacity;
-};
-
 /* What one thread owns while it renders. */
 struct sr_worker {
     uint64_t rays, shadow_rays, vertices; // counted, never shared

@@ -58,21 +58,53 @@ bool sr_raycast(const struct sr_scene *scene, const struct sr_ray *ray, struct s
     return true;
 }
 
-bool sr_visible(const struct sr_scene *scene, const struct sr_point *x, const struct sr_light_sample *s)
+struct sr_ray sr_shadow_ray(const struct sr_point *x, const struct sr_light_sample *s)
+{
+    sr_vec3 o = sr_point_offset(x, s->wi);
+    if (isinf(s->distance))
+        return (struct sr_ray){.o = o, .d = s->wi, .time = x->time, .t_max = INFINITY};
+    struct sr_point target = {.p = s->p, .p_error = s->p_error, .n = s->n};
+    bool has_surface = s->n.x != 0 || s->n.y != 0 || s->n.z != 0;
+    sr_vec3 to = has_surface ? sr_point_offset(&target, sr_neg(s->wi)) : s->p;
+    return (struct sr_ray){.o = o, .d = sr_sub(to, o), .time = x->time, .t_max = SHADOW_SHARE};
+}
+
+bool sr_is_free(const struct sr_scene *scene, const struct sr_ray *ray)
 {
     struct RTCRay r;
-    sr_vec3 o = sr_point_offset(x, s->wi);
-    if (isinf(s->distance)) {
-        fill_ray(&r, o, s->wi, x->time, INFINITY);
-    } else {
-        struct sr_point target = {.p = s->p, .p_error = s->p_error, .n = s->n};
-        sr_vec3 to = s->n.x == 0 && s->n.y == 0 && s->n.z == 0 ? s->p : sr_point_offset(&target, sr_neg(s->wi));
-        fill_ray(&r, o, sr_sub(to, o), x->time, SHADOW_SHARE);
-    }
+    fill_ray(&r, ray->o, ray->d, ray->time, ray->t_max);
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded1(scene->embree, &context, &r);
     return r.tfar >= 0;
+}
+
+bool sr_visible(const struct sr_scene *scene, const struct sr_point *x, const struct sr_light_sample *s)
+{
+    struct sr_ray ray = sr_shadow_ray(x, s);
+    return sr_is_free(scene, &ray);
+}
+
+uint64_t sr_scene_replay(const struct sr_scene *scene, const struct sr_ray_log *log)
+{
+    uint64_t met = 0;
+    for (uint64_t i = 0; i < log->count; ++i) {
+        const struct sr_logged_ray *l = &log->rays[i];
+        struct RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        struct RTCRayHit rh;
+        fill_ray(&rh.ray, l->o, l->d, 0, l->t_max);
+        if (l->is_shadow) {
+            rtcOccluded1(scene->embree, &context, &rh.ray);
+            met += rh.ray.tfar < 0;
+        } else {
+            rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+            rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+            rtcIntersect1(scene->embree, &context, &rh);
+            met += rh.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+        }
+    }
+    return met;
 }
 
 void sr_point_set_footprint(struct sr_point *x, sr_vec3 dpdx, sr_vec3 dpdy)

@@ -52,6 +52,9 @@ struct sr_hit {
 bool sr_raycast(const struct sr_scene *scene, const struct sr_ray *ray, struct sr_hit *hit);
 /* The visibility function V between x and the point (or, at infinite distance, the direction) of a light sample. */
 bool sr_visible(const struct sr_scene *scene, const struct sr_point *x, const struct sr_light_sample *s);
+/* The same in two steps: the segment (direction not of unit length, t from 0 to t_max), and whether it is free. */
+struct sr_ray sr_shadow_ray(const struct sr_point *x, const struct sr_light_sample *s);
+bool sr_is_free(const struct sr_scene *scene, const struct sr_ray *segment);
 /* A ray that leaves x toward w. */
 static inline struct sr_ray sr_leave(const struct sr_point *x, sr_vec3 w)
 {
@@ -59,6 +62,19 @@ static inline struct sr_ray sr_leave(const struct sr_point *x, sr_vec3 w)
 }
 /* The point's footprint from the sensor ray's differentials, or a cone: fills dpdx … dvdy. */
 void sr_point_set_footprint(struct sr_point *x, sr_vec3 dpdx, sr_vec3 dpdy);
+
+/* Rays in the order in which a render asked for them, to be replayed through the bare ray caster. */
+struct sr_ray_log {
+    struct sr_logged_ray {
+        sr_vec3 o, d;
+        float t_max; // [in lengths of d]
+        bool is_shadow;
+    } *rays;
+    uint64_t count, capacity;
+};
+/* Asks the ray caster the same questions again and does nothing with the answers: what the rays alone cost. Returns how
+ * many met something. */
+uint64_t sr_scene_replay(const struct sr_scene *scene, const struct sr_ray_log *log);
 
 const struct sr_lights *sr_scene_lights(const struct sr_scene *scene);
 struct sr_box sr_scene_bounds(const struct sr_scene *scene);

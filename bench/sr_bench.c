@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: MIT */
+/* Benchmarks: named cases, one line of JSON each; ratios come from one run.
+ *
+ * For each case, medians of several runs of
+ *   paths/s of one thread and of all threads, rays/s, thread efficiency,
+ *   ray-replay efficiency eta = (time of the bare ray caster for the very rays of the render) / (time of the render),
+ *   time to read, to build the acceleration structure, peak memory.
+ * Each case runs in a process of its own, so that its peak memory is its own. */
+#include "import/import.h"
+#include "render/render.h"
+
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static const char *const cases[] = {"cornell", "mesh", "glossy", "emitters"};
+enum { CASES = sizeof cases / sizeof cases[0], MAX_RUNS = 15 };
+
+struct settings {
+    const char *folder, *only, *scene;
+    uint32_t spp, size, seed;
+    int runs;
+};
+
+static int by_value(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double *v, int n)
+{
+    qsort(v, (size_t)n, sizeof *v, by_value);
+    return v[n / 2];
+}
+
+static void warn(void *user, enum sr_severity severity, const char *text)
+{
+    (void)user;
+    if (severity == SR_WARNING)
+        fprintf(stderr, "warning: %s\n", text);
+}
+
+static double timed_render(const struct sr_render_job *job, int threads, struct sr_render_report *report)
+{
+    struct sr_render_job one = *job;
+    one.threads = threads;
+    struct sr_error error = {0};
+    struct sr_film *film;
+    if (sr_render(&one, &film, report, &error) != SR_OK) {
+        fprintf(stderr, "sr_bench: %s\n", error.text);
+        exit(1);
+    }
+    sr_film_destroy(film);
+    return report->render_s;
+}
+
+struct replay {
+    const struct sr_scene *scene;
+    const struct sr_ray_log *log;
+    double time_s;
+    uint64_t met;
+};
+
+static void replay(void *context, int thread)
+{
+    (void)thread;
+    struct replay *r = context;
+    double start = sr_clock_s();
+    r->met = sr_scene_replay(r->scene, r->log);
+    r->time_s = sr_clock_s() - start;
+}
+
+static int run_case(const struct settings *s, const char *name, const char *path)
+{
+    struct sr_import_options options = {.spp = s->spp, .width = s->size, .height = s->size};
+    struct sr_log log = {.write = warn};
+    struct sr_error error = {0};
+    struct sr_import_result scene;
+    if (sr_import_pbrt(path, &options, &scene, &log, &error) != SR_OK) {
+        fprintf(stderr, "sr_bench: %s\n", error.text);
+        return 1;
+    }
+    struct sr_scene_counts counts = sr_scene_count(scene.scene);
+    struct sr_render_job job = {
+        .scene = scene.scene, .sensor = scene.sensor, .filter = scene.filter, .integrator = scene.integrator, .film = scene.film,
+        .sampler = scene.sampler, .seed = s->seed, .spp = scene.spp, .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
+        .jitter_pixel = true, .jitter_lambda = true,
+    };
+    struct sr_render_report report;
+    timed_render(&job, 1, &report); // warms the caches, and tells how many rays there are
+    uint64_t peak_B = sr_peak_memory_B();
+    int threads = sr_thread_count();
+    struct sr_ray_log rays = {.capacity = report.rays + report.shadow_rays};
+    rays.rays = sr_alloc(rays.capacity * sizeof *rays.rays);
+    if (!rays.rays)
+        return 1;
+    job.log = &rays;
+    timed_render(&job, 1, &report);
+    job.log = NULL;
+
+    double one[MAX_RUNS], all[MAX_RUNS], bare[MAX_RUNS];
+    for (int i = 0; i < s->runs; ++i) { // in turn, so that a drift of the machine's speed meets all
+        one[i] = timed_render(&job, 1, &report);
+        all[i] = timed_render(&job, threads, &report);
+        struct replay r = {.scene = scene.scene, .log = &rays};
+        sr_parallel(1, replay, &r);
+        bare[i] = r.time_s;
+    }
+    double spread = 0, t_one = median(one, s->runs), t_all = median(all, s->runs), t_bare = median(bare, s->runs);
+    spread = (one[s->runs - 1] - one[0]) / t_one;
+    double n_rays = (double)(report.rays + report.shadow_rays);
+    printf("{\"case\": \"%s\", \"width\": %d, \"height\": %d, \"spp\": %u, \"runs\": %d, \"spread\": %.3f, \"paths_per_s_1\": %.0f, \"paths_per_s\": %.0f, "
+           "\"threads\": %d, \"thread_efficiency\": %.3f, \"rays_per_s_1\": %.0f, \"rays_per_path\": %.3f, \"shadow_rays_per_path\": %.3f, \"eta\": %.3f, "
+           "\"bare_ns_per_ray\": %.1f, \"read_s\": %.3f, \"build_s\": %.3f, \"peak_memory_B\": %llu, \"triangles\": %llu}\n",
+           name, scene.film.width, scene.film.height, scene.spp, s->runs, spread, (double)report.paths / t_one, (double)report.paths / t_all, threads,
+           t_one / (t_all * threads), n_rays / t_one, (double)report.rays / (double)report.paths, (double)report.shadow_rays / (double)report.paths,
+           t_bare / t_one, 1e9 * t_bare / n_rays, scene.read_s, counts.build_s, (unsigned long long)peak_B, (unsigned long long)counts.triangles);
+    sr_free(rays.rays);
+    sr_import_result_free(&scene);
+    return 0;
+}
+
+static int run_apart(const struct settings *s, const char *name, const char *path)
+{
+    fflush(stdout);
+    pid_t child = fork();
+    if (child == 0)
+        exit(run_case(s, name, path));
+    int status = 1;
+    if (child < 0 || waitpid(child, &status, 0) < 0)
+        return 1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+}
+
+static bool make_scenes(const char *folder)
+{
+    char path[4096], command[9000];
+    snprintf(path, sizeof path, "%s/emitters.pbrt", folder);
+    if (sr_file_exists(path))
+        return true;
+    snprintf(command, sizeof command, "python3 '%s/bench/make-scenes' '%s'", SR_BENCH_SOURCE_DIR, folder);
+    return system(command) == 0;
+}
+
+int main(int argc, char **argv)
+{
+    static const struct option options[] = {
+        {"case", required_argument, NULL, 'c'}, {"scene", required_argument, NULL, 'f'}, {"spp", required_argument, NULL, 's'}, {"size", required_argument, NULL, 'z'},
+        {"runs", required_argument, NULL, 'r'}, {"folder", required_argument, NULL, 'd'}, {"help", no_argument, NULL, 'h'}, {NULL, 0, NULL, 0},
+    };
+    struct settings s = {.folder = SR_BENCH_BUILD_DIR "/bench-scenes", .spp = 16, .size = 256, .runs = 3, .seed = 1};
+    int option;
+    while ((option = getopt_long(argc, argv, "h", options, NULL)) != -1)
+        switch (option) {
+        case 'c': s.only = optarg; break;
+        case 'f': s.scene = optarg; break;
+        case 's': s.spp = (uint32_t)strtoul(optarg, NULL, 10); break;
+        case 'z': s.size = (uint32_t)strtoul(optarg, NULL, 10); break;
+        case 'r': s.runs = (int)strtol(optarg, NULL, 10); break;
+        case 'd': s.folder = optarg; break;
+        default:
+            printf("Usage: sr_bench [--case cornell|mesh|glossy|emitters] [--scene FILE] [--spp N] [--size PIXELS] [--runs N] [--folder SCENES]\n");
+            return option == 'h' ? 0 : 2;
+        }
+    s.runs = s.runs < 1 ? 1 : s.runs > MAX_RUNS ? MAX_RUNS : s.runs;
+    if (s.scene)
+        return run_apart(&s, s.scene, s.scene);
+    if (!make_scenes(s.folder)) {
+        fprintf(stderr, "sr_bench: the scenes cannot be made in %s\n", s.folder);
+        return 1;
+    }
+    int failed = 0;
+    for (int i = 0; i < CASES; ++i) {
+        if (s.only && strcmp(s.only, cases[i]) != 0)
+            continue;
+        char path[4096];
+        snprintf(path, sizeof path, "%s/%s.pbrt", s.folder, cases[i]);
+        failed |= run_apart(&s, cases[i], path);
+    }
+    return failed;
+}
