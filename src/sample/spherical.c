@@ -52,19 +52,33 @@ static sr_vec3 tangent(sr_vec3 from, sr_vec3 d)
     return sr_normalize(sr_mad(d, 0.5f * sr_length2(d), from));
 }
 
+// not edge-on, nor p within the triangle itself, where directions do not tell points apart
+static bool is_usable(float omega)
+{
+    return omega > 1e-30f && omega < 6.2831f;
+}
+
+float sr_spherical_triangle_pdf(const sr_vec3 v[3], sr_vec3 p)
+{
+    struct corners t = see(v, p);
+    float omega = solid_angle(t.volume, t.A, t.B, t.C, t.a, t.b, t.c);
+    return is_usable(omega) ? 1 / omega : 0;
+}
+
 void sr_spherical_triangle_sample(const sr_vec3 v[3], sr_vec3 p, sr_vec2 u, float barycentric[3], float *pdf)
 {
     struct corners t = see(v, p);
     float omega = solid_angle(t.volume, t.A, t.B, t.C, t.a, t.b, t.c);
     *pdf = 0;
     barycentric[0] = barycentric[1] = barycentric[2] = 1.0f / 3;
-    if (!(omega > 1e-30f) || !(omega < 6.2831f))
+    if (!is_usable(omega))
         return;
 
     sr_vec3 a = sr_scale(1 / t.a, t.A), b = sr_scale(1 / t.b, t.B);
     sr_vec3 ab = unit_difference(t.A, t.B, t.e1, t.a, t.b), ac = unit_difference(t.A, t.C, t.e2, t.a, t.c);
     sr_vec3 along = tangent(a, ac);
-    float half = 0.5f * u.x * omega, S = sinf(half), C = cosf(half);
+    float S, C;
+    sr_sin_cos_turn(u.x * omega * (0.25f * SR_INV_PI), &S, &C);
     float height = fabsf(sr_dot(along, sr_cross(a, ab)));
     float P = S * (1 + sr_dot(a, b)), Q = fmaxf(0, C * height - S * sr_dot(ab, along));
     float size = P * P + Q * Q;
@@ -178,6 +192,12 @@ static bool see_rectangle(sr_vec3 p, sr_vec3 s, sr_vec3 ex, sr_vec3 ey, struct r
     return r->omega > 0;
 }
 
+float sr_spherical_rectangle_pdf(sr_vec3 p, sr_vec3 s, sr_vec3 ex, sr_vec3 ey)
+{
+    struct rectangle r;
+    return see_rectangle(p, s, ex, ey, &r) ? 1 / r.omega : 0;
+}
+
 sr_vec3 sr_spherical_rectangle_sample(sr_vec3 p, sr_vec3 s, sr_vec3 ex, sr_vec3 ey, sr_vec2 u, float *pdf)
 {
     struct rectangle r;
@@ -185,9 +205,9 @@ sr_vec3 sr_spherical_rectangle_sample(sr_vec3 p, sr_vec3 s, sr_vec3 ex, sr_vec3 
     if (!see_rectangle(p, s, ex, ey, &r))
         return sr_add(s, sr_scale(0.5f, sr_add(ex, ey)));
 
-    float half = 0.5f * u.x * r.omega;
-    double sin_half = (double)sinf(half), cos_half = (double)cosf(half);
-    double sin_a = 2 * sin_half * cos_half, cos_a = 1 - 2 * sin_half * sin_half;
+    float s_half, c_half;
+    sr_sin_cos_turn(u.x * r.omega * (0.25f * SR_INV_PI), &s_half, &c_half);
+    double sin_half = (double)s_half, cos_a = 1 - 2 * sin_half * sin_half, sin_a = 2 * sin_half * (double)c_half;
     double sin_t = sin_a * r.cos0 + cos_a * r.sin0, cos_t = cos_a * r.cos0 - sin_a * r.sin0;
     double below = r.beta0 * r.beta0 + r.beta1 * r.beta1 - 2 * r.beta0 * r.beta1 * cos_t;
     // sin^2 of the arc from the foot to x: x / z = tan

@@ -5,28 +5,8 @@
  *     cosine hemisphere: z = sqrt(1 - r^2) over the disk (Malley);   exponential: x = -log(1 - u) / a
  *
  * P. Shirley & K. Chiu, A Low Distortion Map Between Disk and Square, 1997; E. Heitz, A Low-Distortion Map Between
- * Triangle and Square, 2019. Sines are polynomials on an eighth turn, off by less than 1e-7. */
+ * Triangle and Square, 2019. */
 #include "sample/sample.h"
-
-// sine and cosine of x in -pi/4 … pi/4 [rad], by Taylor's series
-static void sin_cos_eighth(float x, float *s, float *c)
-{
-    float x2 = x * x;
-    *s = x + x * x2 * (-1.0f / 6 + x2 * (1.0f / 120 + x2 * (-1.0f / 5040 + x2 * (1.0f / 362880))));
-    *c = 1 + x2 * (-0.5f + x2 * (1.0f / 24 + x2 * (-1.0f / 720 + x2 * (1.0f / 40320))));
-}
-
-// of a share of the whole turn in 0 … 1
-static void sin_cos_turn(float turn, float *s, float *c)
-{
-    int quarter = (int)(4 * turn + 0.5f);
-    float x, y;
-    sin_cos_eighth((turn - 0.25f * (float)quarter) * (2 * SR_PI), &y, &x);
-    bool odd = quarter & 1;
-    float a = odd ? y : x, b = odd ? x : y;
-    *c = (quarter + 1) & 2 ? -a : a;
-    *s = quarter & 2 ? -b : b;
-}
 
 sr_vec2 sr_warp_disk(sr_vec2 u)
 {
@@ -35,21 +15,21 @@ sr_vec2 sr_warp_disk(sr_vec2 u)
     float r = wide ? a : b, across = wide ? b : a;
     if (r == 0)
         return (sr_vec2){0, 0};
-    sin_cos_eighth(SR_PI / 4 * (across / r), &s, &c);
+    sr_sin_cos_eighth(SR_PI / 4 * (across / r), &s, &c);
     return wide ? (sr_vec2){r * c, r * s} : (sr_vec2){r * s, r * c};
 }
 
 sr_vec3 sr_warp_uniform_sphere(sr_vec2 u)
 {
     float s, c, sin_theta = 2 * sqrtf(u.x * (1 - u.x));
-    sin_cos_turn(u.y, &s, &c);
+    sr_sin_cos_turn(u.y, &s, &c);
     return (sr_vec3){sin_theta * c, sin_theta * s, 1 - 2 * u.x};
 }
 
 sr_vec3 sr_warp_uniform_hemisphere(sr_vec2 u)
 {
     float s, c, sin_theta = sqrtf((1 - u.x) * (1 + u.x));
-    sin_cos_turn(u.y, &s, &c);
+    sr_sin_cos_turn(u.y, &s, &c);
     return (sr_vec3){sin_theta * c, sin_theta * s, u.x};
 }
 
@@ -63,7 +43,7 @@ sr_vec3 sr_warp_uniform_cone(sr_vec2 u, float one_minus_cos_max)
 {
     float s, c, one_minus_cos = u.x * one_minus_cos_max;
     float sin_theta = sr_safe_sqrt(one_minus_cos * (2 - one_minus_cos));
-    sin_cos_turn(u.y, &s, &c);
+    sr_sin_cos_turn(u.y, &s, &c);
     return (sr_vec3){sin_theta * c, sin_theta * s, 1 - one_minus_cos};
 }
 

@@ -82,6 +82,7 @@ TEST(spherical_triangles_are_sampled_evenly_and_inverted)
             sr_spherical_triangle_sample(v, p, u, b, &pdf);
             EXPECT(pdf > 0 && b[0] >= 0 && b[1] >= 0 && b[2] >= 0);
             EXPECT_NEAR(b[0] + b[1] + b[2], 1, 1e-6);
+            EXPECT_RELATIVE(sr_spherical_triangle_pdf(v, p), pdf, 1e-6);
             EXPECT_RELATIVE(pdf, 1 / total, 2e-4);
             double a = 1 - (double)b[0], share = a > 0 ? (double)b[2] / a : 0;
             int x = (int)fmin(a * GRID, GRID - 1), y = (int)fmin(share * GRID, GRID - 1);
@@ -124,6 +125,7 @@ TEST(spherical_rectangles_are_sampled_evenly_and_inverted)
             float pdf;
             sr_vec3 q = sr_spherical_rectangle_sample(p, s, ex, ey, u, &pdf), d = sr_sub(q, s);
             EXPECT_RELATIVE(pdf, 1 / total, 2e-4);
+            EXPECT_RELATIVE(sr_spherical_rectangle_pdf(p, s, ex, ey), pdf, 1e-6);
             float a = sr_dot(d, ex) / sr_length2(ex), b = sr_dot(d, ey) / sr_length2(ey);
             EXPECT(a > -1e-3f && a < 1.001f && b > -1e-3f && b < 1.001f);
             int x = (int)sr_clamp(a * GRID, 0, GRID - 1), y = (int)sr_clamp(b * GRID, 0, GRID - 1);
@@ -152,7 +154,7 @@ TEST(degenerate_triangles_and_rectangles_give_no_density)
     for (int k = 0; k < 5; ++k) {
         float b[3], pdf = 7;
         sr_spherical_triangle_sample(cases[k], p, (sr_vec2){0.3f, 0.6f}, b, &pdf);
-        EXPECT(pdf == 0);
+        EXPECT(pdf == 0 && sr_spherical_triangle_pdf(cases[k], p) == 0);
         sr_vec2 u = sr_spherical_triangle_invert(cases[k], p, (sr_vec3){0, 0, 1});
         EXPECT(k == 3 || k == 4 || (u.x >= 0 && u.x < 1 && u.y >= 0 && u.y < 1));
     }

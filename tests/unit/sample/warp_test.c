@@ -133,6 +133,18 @@ TEST(warps_take_the_corners_of_the_square)
     }
 }
 
+TEST(sine_and_cosine_of_a_turn_are_those_of_the_library)
+{
+    for (int i = 0; i <= 100000; ++i) {
+        float turn = i < 1000 ? (float)i * 1e-9f : (float)i / 100000, s, c;
+        sr_sin_cos_turn(turn, &s, &c);
+        EXPECT_NEAR(s, sin(2 * M_PI * (double)turn), 1.5e-7);
+        EXPECT_NEAR(c, cos(2 * M_PI * (double)turn), 1.5e-7);
+        if (i < 1000)
+            EXPECT_RELATIVE(s, sin(2 * M_PI * (double)turn), 2e-7);
+    }
+}
+
 TEST(bilinear_warp_has_its_density)
 {
     float cases[][4] = {{1, 2, 3, 4}, {0, 0, 0, 1}, {1, 0, 0, 1}, {0, 0, 0, 0}, {5, 0, 0, 0}, {1, 1, 1, 1}};
