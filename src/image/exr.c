@@ -429,6 +429,7 @@ static sr_status encode(const struct sr_image *image, const struct sr_image_writ
     struct job job = {.out = out};
     exr_context_initializer_t init = initializer(&job);
     init.write_fn = put;
+    init.zip_level = 2; // the noise of renderings shrinks no further at higher levels
     exr_context_t exr = NULL;
     exr_result_t result = exr_start_write(&exr, "image.exr", EXR_WRITE_FILE_DIRECTLY, &init);
     if (result == EXR_ERR_SUCCESS)

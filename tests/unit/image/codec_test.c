@@ -199,6 +199,28 @@ TEST(hdr_reads_the_older_run_lengths_exposure_and_upward_rows)
     sr_image_free(image);
 }
 
+TEST(hdr_converts_xyze_and_keeps_primaries)
+{
+    // X, Y, Z = 0.9505, 1, 1.0890 (D65) to half a step of 1/128: grey within 2 %
+    static const char file[] = "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n\x79\x80\x8b\x81";
+    struct sr_image *image;
+    struct sr_error error = {0};
+    EXPECT(sr_image_decode("x.hdr", file, sizeof file - 1, SR_IMAGE_SRGB, &image, &error) == SR_OK);
+    for (int c = 0; c < 3; c++)
+        EXPECT_NEAR(image->floats[c], 1, 0.02);
+    sr_image_free(image);
+    image = make_image(9, 1, 3, NULL);
+    double rec2020[4][2] = {{0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}, {0.3127, 0.3290}};
+    image->has_chromaticities = true;
+    memcpy(image->chromaticities, rec2020, sizeof rec2020);
+    struct sr_image *back = round_trip(image, ".hdr");
+    EXPECT(back->has_chromaticities);
+    for (int i = 0; i < 8; i++)
+        EXPECT_NEAR(back->chromaticities[i / 2][i % 2], rec2020[i / 2][i % 2], 1e-6);
+    sr_image_free(image);
+    sr_image_free(back);
+}
+
 TEST(png_keeps_every_byte)
 {
     for (uint32_t channels = 1; channels <= 4; channels++) {
