@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: MIT */
+/* What a pbrt file says, before anything is made of it: a list of entities, each with its parameters and with the graphics
+ * state that held where it stood. Reading fills it (parse.c, state.c), building reads it (build.c).
+ *
+ * Everything lives in two arenas: numbers that a scene may keep (vertices, indices) in `data`, all else in `words`. */
+#ifndef SR_IMPORT_PBRT_DESCRIPTION_H
+#define SR_IMPORT_PBRT_DESCRIPTION_H
+
+#include "math/math.h"
+#include "spectrum/spectrum.h"
+
+/* ---- parameters ---- */
+
+enum sr_pbrt_type {
+    SR_PBRT_BOOL,
+    SR_PBRT_FLOAT,
+    SR_PBRT_INTEGER,
+    SR_PBRT_POINT2,
+    SR_PBRT_VECTOR2,
+    SR_PBRT_POINT3,
+    SR_PBRT_VECTOR3,
+    SR_PBRT_NORMAL,
+    SR_PBRT_STRING_TYPE,
+    SR_PBRT_TEXTURE,
+    SR_PBRT_RGB,
+    SR_PBRT_BLACKBODY,
+    SR_PBRT_SPECTRUM,
+};
+const char *sr_pbrt_type_name(enum sr_pbrt_type type);
+
+struct sr_pbrt_param {
+    enum sr_pbrt_type type;
+    enum sr_colour_space_id space; // in force where it stands
+    const char *name;
+    struct sr_location where;
+    uint32_t count;                // of the values below
+    bool is_text;                  // a spectrum that is a name
+    bool is_default;               // came from an Attribute directive: need not be used
+    bool used;
+    const float *floats;           // BOOL and INTEGER: NULL
+    const int32_t *ints;           // BOOL (0, 1) and INTEGER
+    const char *const *strings;    // STRING, TEXTURE, SPECTRUM by name
+};
+
+struct sr_pbrt_params {
+    struct sr_pbrt_param *items; // the entity's own first, then those of Attribute
+    uint32_t count;
+};
+
+/* ---- entities ---- */
+
+struct sr_pbrt_entity {
+    const char *directive; // "Shape"
+    const char *model;     // "trianglemesh"
+    const char *name;      // of named materials, textures, media; NULL
+    struct sr_pbrt_params params;
+    struct sr_location where;
+    enum sr_colour_space_id space;
+    uint32_t transform; // index
+};
+
+/* The current transform at the shutter's opening and closing. */
+struct sr_pbrt_transform {
+    struct sr_transform start, end;
+};
+
+struct sr_pbrt_texture {
+    struct sr_pbrt_entity entity;
+    bool is_float; // else spectrum
+};
+
+/* A material is referred to by its place in the list of Material directives, or by its name. */
+struct sr_pbrt_material_ref {
+    uint32_t index;   // in materials, where name is NULL
+    const char *name; // of a MakeNamedMaterial anywhere in the file
+    struct sr_location where;
+};
+
+struct sr_pbrt_shape {
+    struct sr_pbrt_entity entity;
+    struct sr_pbrt_material_ref material;
+    uint32_t area_light1;        // index from 1 in area_lights; 0: dark
+    uint32_t object1;            // index from 1 in objects; 0: the world
+    bool reverse_orientation;
+    const char *inside, *outside; // media; "" or NULL: none
+    struct sr_location medium_where;
+};
+
+struct sr_pbrt_light {
+    struct sr_pbrt_entity entity;
+    const char *outside; // medium
+    struct sr_location medium_where;
+};
+
+struct sr_pbrt_object {
+    const char *name;
+    struct sr_location where;
+};
+struct sr_pbrt_instance {
+    const char *name;
+    struct sr_location where;
+    uint32_t transform;
+};
+
+struct sr_pbrt_file {
+    const char *path;        // compared as a pointer with sr_location.file
+    struct sr_location from; // the Include or Import that named it; file NULL: the first file
+    uint32_t is_open;        // being read now
+};
+
+struct sr_pbrt_option {
+    const char *name; // lower case, without - and _
+    struct sr_pbrt_param value;
+};
+
+struct sr_pbrt_description {
+    struct sr_arena *data;
+    struct sr_arena words;
+    char *chunk; // small things are cut from it
+    size_t chunk_left;
+    struct sr_array files; // struct sr_pbrt_file *
+    struct sr_log *log;
+
+    /* one each; where == 0 lines: not given. Models are the words of the file, or pbrt's defaults. */
+    struct sr_pbrt_entity camera, film, sampler, filter, integrator, accelerator;
+    const char *camera_medium;
+    struct sr_location camera_medium_where;
+    enum sr_colour_space_id film_space;
+    float transform_start_time, transform_end_time; // [s]
+    bool has_world; // WorldBegin was there
+
+    struct sr_array options;         // struct sr_pbrt_option
+    struct sr_array transforms;      // struct sr_pbrt_transform
+    struct sr_array materials;       // struct sr_pbrt_entity, in the order of Material directives; [0] is the default
+    struct sr_array named_materials; // struct sr_pbrt_entity
+    struct sr_array textures;        // struct sr_pbrt_texture
+    struct sr_array media;           // struct sr_pbrt_entity
+    struct sr_array lights;          // struct sr_pbrt_light
+    struct sr_array area_lights;     // struct sr_pbrt_entity
+    struct sr_array shapes;          // struct sr_pbrt_shape
+    struct sr_array objects;         // struct sr_pbrt_object
+    struct sr_array instances;       // struct sr_pbrt_instance
+
+    size_t text_B; // that has been read
+};
+
+/* Reads a file and all that it includes. data must outlive what is made of the description. The description is valid (and
+ * must be freed) also after a failure. */
+sr_status sr_pbrt_read(const char *path, struct sr_arena *data, struct sr_log *log, struct sr_pbrt_description *out, struct sr_error *error);
+/* The same from memory: label stands for the path. */
+sr_status sr_pbrt_read_text(const char *label, const char *text, size_t size, struct sr_arena *data, struct sr_log *log,
+                            struct sr_pbrt_description *out, struct sr_error *error);
+void sr_pbrt_description_free(struct sr_pbrt_description *d);
+
+#define SR_PBRT_AT(array, type, i) (&((type *)(array).data)[i])
+
+/* ---- small services ---- */
+
+/* Cut from the words arena: 16-byte aligned, zeroed, followed by 16 readable bytes. NULL: no memory. */
+void *sr_pbrt_words(struct sr_pbrt_description *d, size_t size);
+const char *sr_pbrt_text(struct sr_pbrt_description *d, const char *text, size_t length); // a copy, ended by NUL
+
+/* "file:line:column: " and the sentence, and from where the file was included. */
+SR_PRINTF(5, 6)
+sr_status sr_pbrt_fail(const struct sr_pbrt_description *d, struct sr_location where, struct sr_error *error, sr_status status,
+                       const char *format, ...);
+SR_PRINTF(3, 4) void sr_pbrt_warn(const struct sr_pbrt_description *d, struct sr_location where, const char *format, ...);
+
+/* Remembers the candidate nearest to a misspelt word (optimal string alignment distance, case ignored). */
+struct sr_pbrt_suggestion {
+    const char *word, *best;
+    int distance;
+};
+void sr_pbrt_suggest(struct sr_pbrt_suggestion *s, const char *candidate);
+/* `: did you mean "best"?`, or nothing where nothing is near. */
+const char *sr_pbrt_suggestion_text(const struct sr_pbrt_suggestion *s, char buffer[160]);
+
+/* The entity's parameter of that name, whatever its type; marks it used. NULL: not given. */
+struct sr_pbrt_param *sr_pbrt_find(const struct sr_pbrt_params *params, const char *name);
+/* Values of a parameter of that name and type; the first initial value where there is none. A wrong type is an error. */
+sr_status sr_pbrt_get_float(const struct sr_pbrt_description *d, const struct sr_pbrt_params *p, const char *name, float *value, struct sr_error *e);
+sr_status sr_pbrt_get_int(const struct sr_pbrt_description *d, const struct sr_pbrt_params *p, const char *name, int32_t *value, struct sr_error *e);
+sr_status sr_pbrt_get_bool(const struct sr_pbrt_description *d, const struct sr_pbrt_params *p, const char *name, bool *value, struct sr_error *e);
+sr_status sr_pbrt_get_string(const struct sr_pbrt_description *d, const struct sr_pbrt_params *p, const char *name, const char **value, struct sr_error *e);
+
+#endif

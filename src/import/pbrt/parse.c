@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: MIT */
+/* Files into directives: reads a file, finds each directive in the list, sees to it that it stands where it may. */
+#include "import/pbrt/parser.h"
+
+#include <string.h>
+
+enum { MAX_DEPTH = 64 };
+static const size_t max_text_B = (size_t)8 << 30;
+
+/* ---- arguments ---- */
+
+static sr_status wrong_argument(struct sr_pbrt_parser *p, const struct sr_pbrt_token *token, const char *expected)
+{
+    if (token->kind == SR_PBRT_END)
+        return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT, "%s: the file ends: expected %s", p->directive, expected);
+    const char *quote = token->kind == SR_PBRT_STRING ? "\"" : "";
+    return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT, "%s: %s%.*s%s: expected %s", p->directive, quote,
+                        token->length > 60 ? 60 : (int)token->length, token->text, quote, expected);
+}
+
+/* a string, alone or in brackets */
+sr_status sr_pbrt_read_string(struct sr_pbrt_parser *p, const char *expected, const char **text)
+{
+    struct sr_pbrt_token token, close = {0};
+    sr_status status = sr_pbrt_lexer_next(p->lexer, &token, p->error);
+    bool has_bracket = status == SR_OK && token.kind == SR_PBRT_OPEN;
+    if (has_bracket)
+        status = sr_pbrt_lexer_next(p->lexer, &token, p->error);
+    if (status == SR_OK && token.kind != SR_PBRT_STRING)
+        return wrong_argument(p, &token, expected);
+    if (status == SR_OK && has_bracket)
+        status = sr_pbrt_lexer_next(p->lexer, &close, p->error);
+    if (status == SR_OK && has_bracket && close.kind != SR_PBRT_CLOSE)
+        return wrong_argument(p, &close, "] after one string");
+    if (status != SR_OK)
+        return status;
+    *text = sr_pbrt_text(p->d, token.text, token.length);
+    return *text ? SR_OK : sr_fail(p->error, SR_ERROR_RESOURCE, "%s: not enough memory", p->main_path);
+}
+
+sr_status sr_pbrt_read_numbers(struct sr_pbrt_parser *p, int count, double *values)
+{
+    struct sr_pbrt_token token;
+    sr_status status = sr_pbrt_lexer_peek(p->lexer, &token, p->error);
+    bool has_bracket = status == SR_OK && token.kind == SR_PBRT_OPEN;
+    if (has_bracket)
+        status = sr_pbrt_lexer_next(p->lexer, &token, p->error);
+    for (int i = 0; i < count && status == SR_OK; ++i) {
+        status = sr_pbrt_lexer_next(p->lexer, &token, p->error);
+        if (status == SR_OK && !sr_pbrt_token_number(&token, &values[i])) {
+            char expected[64] = "16 numbers";
+            if (count < 10)
+                memcpy(expected, (char[]){(char)('0' + count), ' ', 'n', 'u', 'm', 'b', 'e', 'r', 's', 0}, 10);
+            return wrong_argument(p, &token, expected);
+        }
+    }
+    if (status == SR_OK && has_bracket)
+        status = sr_pbrt_lexer_next(p->lexer, &token, p->error);
+    if (status == SR_OK && has_bracket && token.kind != SR_PBRT_CLOSE)
+        return wrong_argument(p, &token, "] after the last number");
+    return status;
+}
+
+sr_status sr_pbrt_read_entity(struct sr_pbrt_parser *p, const char *expected, struct sr_pbrt_params defaults, struct sr_pbrt_entity *entity)
+{
+    *entity = (struct sr_pbrt_entity){.directive = p->directive, .where = p->where, .space = p->state.space};
+    sr_status status = sr_pbrt_read_string(p, expected, &entity->model);
+    if (status == SR_OK)
+        status = sr_pbrt_params_read(p->d, p->lexer, &p->scratch, p->state.space, defaults, &entity->params, p->error);
+    if (status == SR_OK && (entity->transform = sr_pbrt_store_transform(p)) == UINT32_MAX)
+        status = p->error->status;
+    return status;
+}
+
+/* ---- directives ---- */
+
+static sr_status unknown_directive(struct sr_pbrt_parser *p, const struct sr_pbrt_token *token)
+{
+    char word[64], buffer[160];
+    size_t n = token->length < sizeof word - 1 ? token->length : sizeof word - 1;
+    memcpy(word, token->text, n);
+    word[n] = 0;
+    double number;
+    if (sr_pbrt_token_number(token, &number))
+        return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT, "the number %s stands alone%s%s: expected a directive", word,
+                            p->directive ? " after " : "", p->directive ? p->directive : "");
+    struct sr_pbrt_suggestion s = {.word = word};
+    for (const struct sr_pbrt_directive *d = sr_pbrt_directives; d->word; ++d)
+        sr_pbrt_suggest(&s, d->word);
+    return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT, "unknown directive %s%s", word, sr_pbrt_suggestion_text(&s, buffer));
+}
+
+static sr_status read_directive(struct sr_pbrt_parser *p, const struct sr_pbrt_token *token)
+{
+    if (token->kind != SR_PBRT_WORD)
+        return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT, "%s%.*s%s stands alone: expected a directive, such as Shape",
+                            token->kind == SR_PBRT_STRING ? "\"" : "", token->length > 60 ? 60 : (int)token->length, token->text,
+                            token->kind == SR_PBRT_STRING ? "\"" : "");
+    const struct sr_pbrt_directive *d = sr_pbrt_directives;
+    while (d->word && (strlen(d->word) != token->length || memcmp(d->word, token->text, token->length) != 0))
+        ++d;
+    if (!d->word)
+        return unknown_directive(p, token);
+    if (!(d->block & (p->d->has_world ? SR_PBRT_IN_WORLD : SR_PBRT_IN_OPTIONS)))
+        return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT,
+                            p->d->has_world ? "%s may not stand after WorldBegin: expected before it" : "%s may not stand before WorldBegin: expected after it",
+                            d->word);
+    p->directive = d->word;
+    p->where = token->where;
+    return d->read(p);
+}
+
+static sr_status read_text(struct sr_pbrt_parser *p, const char *path, const char *text, size_t size)
+{
+    struct sr_pbrt_lexer lexer = sr_pbrt_lexer_start(path, text, size, &p->d->words), *outer = p->lexer;
+    struct sr_pbrt_token token;
+    p->lexer = &lexer;
+    p->d->text_B += size;
+    sr_status status;
+    while ((status = sr_pbrt_lexer_next(&lexer, &token, p->error)) == SR_OK && token.kind != SR_PBRT_END)
+        if ((status = read_directive(p, &token)) != SR_OK)
+            break;
+    p->lexer = outer;
+    return status;
+}
+
+/* ---- files ---- */
+
+static struct sr_pbrt_file *add_file(struct sr_pbrt_parser *p, const char *path, struct sr_location from)
+{
+    struct sr_pbrt_file **slot = sr_array_push(&p->d->files, sizeof(struct sr_pbrt_file *));
+    struct sr_pbrt_file *file = slot ? sr_pbrt_words(p->d, sizeof *file) : NULL;
+    if (!file || !(file->path = sr_pbrt_text(p->d, path, strlen(path)))) {
+        p->d->files.count -= slot != NULL;
+        sr_fail(p->error, SR_ERROR_RESOURCE, "%s: not enough memory", path);
+        return NULL;
+    }
+    *slot = file;
+    file->from = from;
+    return file;
+}
+
+static sr_status read_file(struct sr_pbrt_parser *p, struct sr_pbrt_file *file)
+{
+    char *text;
+    size_t size;
+    struct sr_error error = {0};
+    sr_status status = sr_file_read(file->path, max_text_B, &text, &size, &error);
+    if (status != SR_OK)
+        return file->from.file ? sr_pbrt_fail(p->d, file->from, p->error, status, "%s", error.text) : sr_fail(p->error, status, "%s", error.text);
+    file->is_open = true;
+    status = read_text(p, file->path, text, size);
+    file->is_open = false;
+    sr_free(text);
+    return status;
+}
+
+/* Names count from the folder of the first file; where nothing is there, from the folder of the file that names it. */
+sr_status sr_pbrt_include(struct sr_pbrt_parser *p, const char *name)
+{
+    char *path = sr_path_beside(&p->d->words, p->main_path, name);
+    if (path && !sr_file_exists(path)) {
+        char *nearer = sr_path_beside(&p->d->words, p->where.file, name);
+        path = nearer && sr_file_exists(nearer) ? nearer : path;
+    }
+    if (!path)
+        return sr_fail(p->error, SR_ERROR_RESOURCE, "%s: not enough memory", p->main_path);
+    for (size_t i = 0; i < p->d->files.count; ++i) {
+        const struct sr_pbrt_file *f = *SR_PBRT_AT(p->d->files, struct sr_pbrt_file *, i);
+        if (f->is_open && strcmp(f->path, path) == 0)
+            return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "%s \"%s\": this file is being read already, it includes itself",
+                                p->directive, name);
+    }
+    if (p->depth >= MAX_DEPTH)
+        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "%s \"%s\": files are nested more than %d deep", p->directive, name, MAX_DEPTH);
+    struct sr_pbrt_file *file = add_file(p, path, p->where);
+    if (!file)
+        return p->error->status;
+    ++p->depth;
+    sr_status status = read_file(p, file);
+    --p->depth;
+    return status;
+}
+
+/* ---- the whole ---- */
+
+static struct sr_pbrt_entity default_entity(const char *directive, const char *model)
+{
+    return (struct sr_pbrt_entity){.directive = directive, .model = model, .space = SR_SRGB};
+}
+
+static sr_status start(struct sr_pbrt_parser *p, const char *path, struct sr_arena *data, struct sr_log *log, struct sr_pbrt_description *d,
+                       struct sr_error *error)
+{
+    *d = (struct sr_pbrt_description){.data = data, .log = log, .transform_end_time = 1, .film_space = SR_SRGB};
+    d->camera = default_entity("Camera", "perspective");
+    d->film = default_entity("Film", "rgb");
+    d->sampler = default_entity("Sampler", "zsobol");
+    d->filter = default_entity("PixelFilter", "gaussian");
+    d->integrator = default_entity("Integrator", "volpath");
+    d->accelerator = default_entity("Accelerator", "bvh");
+    struct sr_transform one = sr_transform_identity();
+    *p = (struct sr_pbrt_parser){.d = d, .error = error, .main_path = path};
+    p->state = (struct sr_pbrt_state){.ctm = {one, one}, .transform = UINT32_MAX, .at_start = true, .at_end = true, .space = SR_SRGB};
+    struct sr_pbrt_entity *material = sr_array_push(&d->materials, sizeof *material);
+    if (!material || sr_pbrt_store_transform(p) == UINT32_MAX)
+        return sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", path);
+    *material = default_entity("Material", "diffuse");
+    return SR_OK;
+}
+
+static sr_status finish(struct sr_pbrt_parser *p, sr_status status, const struct sr_pbrt_file *file)
+{
+    if (status == SR_OK && p->stack.count) {
+        const struct sr_pbrt_saved_state *open = SR_PBRT_AT(p->stack, struct sr_pbrt_saved_state, p->stack.count - 1);
+        status = sr_pbrt_fail(p->d, open->where, p->error, SR_ERROR_INPUT, "%s", open->is_object ? "ObjectBegin without ObjectEnd" : "AttributeBegin without AttributeEnd");
+    }
+    if (status == SR_OK && !p->d->has_world)
+        status = sr_fail(p->error, SR_ERROR_INPUT, "%s: the file ends before WorldBegin: expected a scene", file->path);
+    sr_array_free(&p->stack);
+    sr_array_free(&p->coordinates);
+    sr_pbrt_scratch_free(&p->scratch);
+    return status;
+}
+
+sr_status sr_pbrt_read(const char *path, struct sr_arena *data, struct sr_log *log, struct sr_pbrt_description *out, struct sr_error *error)
+{
+    struct sr_pbrt_parser p;
+    sr_status status = start(&p, path, data, log, out, error);
+    struct sr_pbrt_file *file = status == SR_OK ? add_file(&p, path, (struct sr_location){0}) : NULL;
+    return finish(&p, file ? read_file(&p, file) : error->status, file);
+}
+
+sr_status sr_pbrt_read_text(const char *label, const char *text, size_t size, struct sr_arena *data, struct sr_log *log,
+                            struct sr_pbrt_description *out, struct sr_error *error)
+{
+    struct sr_pbrt_parser p;
+    sr_status status = start(&p, label, data, log, out, error);
+    struct sr_pbrt_file *file = status == SR_OK ? add_file(&p, label, (struct sr_location){0}) : NULL;
+    return finish(&p, file ? read_text(&p, file->path, text, size) : error->status, file);
+}
