@@ -19,9 +19,9 @@ static struct sr_location location(const struct sr_pbrt_lexer *l, const char *p)
     return (struct sr_location){l->file, l->line, (int)(p - l->line_start) + 1};
 }
 
-struct sr_location sr_pbrt_lexer_where(const struct sr_pbrt_lexer *lexer)
+struct sr_location sr_pbrt_lexer_number_where(const struct sr_pbrt_lexer *lexer)
 {
-    return lexer->has_next ? lexer->next_token.where : location(lexer, lexer->p);
+    return location(lexer, lexer->number);
 }
 
 /* to the next character that means something */
@@ -171,9 +171,11 @@ enum sr_pbrt_number_result sr_pbrt_lexer_number(struct sr_pbrt_lexer *l, double 
         if (l->next_token.kind != SR_PBRT_WORD || !sr_pbrt_token_number(&l->next_token, value))
             return SR_PBRT_IS_OTHER;
         l->has_next = false;
+        l->number = l->next_token.text;
         return SR_PBRT_IS_NUMBER;
     }
     skip_space(l);
+    l->number = l->p;
     const char *end = read_number(l->p, value);
     if (SR_LIKELY(end != NULL)) {
         l->p = end;

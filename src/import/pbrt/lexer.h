@@ -24,6 +24,7 @@ struct sr_pbrt_lexer {
     const char *file;           // name for messages
     const char *p, *end;        // *end is NUL
     const char *line_start;
+    const char *number; // where the latest of sr_pbrt_lexer_number began
     int line;
     struct sr_arena *arena;     // for strings with escapes
     bool has_next;              // one token has been looked at and not taken
@@ -42,6 +43,6 @@ enum sr_pbrt_number_result { SR_PBRT_IS_NUMBER, SR_PBRT_IS_CLOSE, SR_PBRT_IS_OTH
 enum sr_pbrt_number_result sr_pbrt_lexer_number(struct sr_pbrt_lexer *lexer, double *value);
 /* The number that a word spells. */
 bool sr_pbrt_token_number(const struct sr_pbrt_token *token, double *value);
-struct sr_location sr_pbrt_lexer_where(const struct sr_pbrt_lexer *lexer);
+struct sr_location sr_pbrt_lexer_number_where(const struct sr_pbrt_lexer *lexer); // of the latest
 
 #endif

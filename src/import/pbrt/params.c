@@ -126,8 +126,8 @@ static sr_status push_number(struct sr_pbrt_description *d, const struct sr_pbrt
 }
 
 /* one value that is a token of its own: a string, true or false, or a single number */
-static sr_status read_token_value(struct sr_pbrt_description *d, struct sr_pbrt_lexer *lexer, struct sr_pbrt_param *p, enum storage *storage,
-                                  const struct sr_pbrt_token *token, struct sr_pbrt_scratch *s, struct sr_error *error)
+static sr_status read_token_value(struct sr_pbrt_description *d, struct sr_pbrt_param *p, enum storage *storage, const struct sr_pbrt_token *token,
+                                  struct sr_pbrt_scratch *s, struct sr_error *error)
 {
     double number;
     if (*storage == FLOATS && p->type == SR_PBRT_SPECTRUM && token->kind == SR_PBRT_STRING && s->floats.count == 0)
@@ -153,7 +153,6 @@ static sr_status read_token_value(struct sr_pbrt_description *d, struct sr_pbrt_
         return SR_OK;
     }
     default:
-        (void)lexer;
         if (!sr_pbrt_token_number(token, &number))
             return wrong_value(d, p, token, p->type == SR_PBRT_SPECTRUM ? "a number or the name of a spectrum" : "a number", error);
         return push_number(d, p, *storage, number, s, token->where, error);
@@ -174,7 +173,7 @@ static sr_status read_numbers(struct sr_pbrt_description *d, struct sr_pbrt_lexe
         }
     } else {
         while ((r = sr_pbrt_lexer_number(lexer, &value)) == SR_PBRT_IS_NUMBER) {
-            sr_status status = push_number(d, p, storage, value, s, sr_pbrt_lexer_where(lexer), error);
+            sr_status status = push_number(d, p, storage, value, s, sr_pbrt_lexer_number_where(lexer), error);
             if (SR_UNLIKELY(status != SR_OK))
                 return status;
         }
@@ -190,7 +189,7 @@ static sr_status read_values(struct sr_pbrt_description *d, struct sr_pbrt_lexer
     s->floats.count = s->ints.count = s->strings.count = 0;
     sr_status status = sr_pbrt_lexer_next(lexer, &token, error);
     if (status == SR_OK && token.kind != SR_PBRT_OPEN)
-        return read_token_value(d, lexer, p, storage, &token, s, error);
+        return read_token_value(d, p, storage, &token, s, error);
     bool is_closed = false;
     while (status == SR_OK && !is_closed) {
         if (*storage == FLOATS || *storage == INTS)
@@ -198,7 +197,7 @@ static sr_status read_values(struct sr_pbrt_description *d, struct sr_pbrt_lexer
         if (status == SR_OK && !is_closed)
             status = sr_pbrt_lexer_next(lexer, &token, error);
         if (status == SR_OK && !is_closed && !(is_closed = token.kind == SR_PBRT_CLOSE))
-            status = read_token_value(d, lexer, p, storage, &token, s, error);
+            status = read_token_value(d, p, storage, &token, s, error);
     }
     return status;
 }

@@ -72,7 +72,7 @@ TEST(errors_tell_file_line_column_and_what_was_expected)
 
 TEST(wrong_values_tell_what_their_type_wants)
 {
-    expect_error("Film \"rgb\" \"integer xresolution\" [ 1.5 ]", "a.pbrt:1:37: 1.5 is no value for \"integer xresolution\": expected a whole number of 32 bits");
+    expect_error("Film \"rgb\" \"integer xresolution\" [ 1.5 ]", "a.pbrt:1:36: 1.5 is no value for \"integer xresolution\": expected a whole number of 32 bits");
     expect_error("Film \"rgb\" \"float a\" [ 1 2 z ]", "a.pbrt:1:28: z is no value for \"float a\": expected a number");
     expect_error("Film \"rgb\" \"float a\" [ 1 2", "a.pbrt:1:27: the file ends among the values of \"float a\": expected a number");
     expect_error("Film \"rgb\" \"bool a\" maybe", "a.pbrt:1:21: maybe is no value for \"bool a\": expected true or false");

@@ -212,7 +212,7 @@ TEST(lies_about_sizes_are_found_before_memory_is_asked_for)
     expect_refusal("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n0 0\n",
                    "m.ply: its vertices have no x, y and z");
     expect_refusal("ply\nformat ascii 1.0\nelement vertex 1\n" VERTEX "element face 1\nproperty list float int vertex_indices\nend_header\n",
-                   "m.ply:7: expected \"property TYPE NAME\" or \"property list INTEGER_TYPE TYPE NAME\"");
+                   "m.ply:8: expected \"property TYPE NAME\" or \"property list INTEGER_TYPE TYPE NAME\"");
     expect_refusal("solid\n", "m.ply: expected a PLY file, which begins with the line \"ply\"");
     expect_refusal("ply\nformat ascii 1.0\n", "m.ply: the head is cut short: expected \"end_header\"");
 }
