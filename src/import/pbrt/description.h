@@ -42,6 +42,9 @@ struct sr_pbrt_param {
     const char *const *strings;    // STRING, TEXTURE, SPECTRUM by name
 };
 
+/* Runs of numbers up to this size are copied when a scene keeps them; longer ones lie in its arena from the start. */
+enum { SR_PBRT_SHORT_RUN_B = 1024 };
+
 struct sr_pbrt_params {
     struct sr_pbrt_param *items; // the entity's own first, then those of Attribute
     uint32_t count;
@@ -142,6 +145,7 @@ struct sr_pbrt_description {
     struct sr_array instances;       // struct sr_pbrt_instance
 
     size_t text_B; // that has been read
+    uint64_t hash; // of it
 };
 
 /* Reads a file and all that it includes. data must outlive what is made of the description. The description is valid (and
@@ -155,6 +159,8 @@ void sr_pbrt_description_free(struct sr_pbrt_description *d);
 #define SR_PBRT_AT(array, type, i) (&((type *)(array).data)[i])
 
 /* ---- small services ---- */
+
+uint64_t sr_pbrt_hash(uint64_t hash, const void *data, size_t size); // of data, going on from hash
 
 /* Cut from the words arena: 16-byte aligned, zeroed, followed by 16 readable bytes. NULL: no memory. */
 void *sr_pbrt_words(struct sr_pbrt_description *d, size_t size);

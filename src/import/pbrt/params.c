@@ -202,7 +202,8 @@ static sr_status read_values(struct sr_pbrt_description *d, struct sr_pbrt_lexer
     return status;
 }
 
-/* From the scratch to where it stays. Arrays that a scene may keep have 16 readable bytes behind them. */
+/* From the scratch to where it stays, with 16 readable bytes behind. Long runs of what a scene keeps as it is (indices,
+ * texture coordinates) go to its arena; positions and normals are transformed, and so copied, anyway. */
 static sr_status keep_values(struct sr_pbrt_description *d, struct sr_pbrt_param *p, enum storage storage, const struct sr_pbrt_scratch *s,
                              struct sr_error *error)
 {
@@ -210,7 +211,8 @@ static sr_status keep_values(struct sr_pbrt_description *d, struct sr_pbrt_param
     size_t size = from->count * (storage == FLOATS ? sizeof(float) : storage == STRINGS ? sizeof(char *) : sizeof(int32_t));
     if (from->count > INT32_MAX)
         return sr_pbrt_fail(d, p->where, error, SR_ERROR_INPUT, "\"%s\" has %zu values; expected at most 2147483647", p->name, from->count);
-    void *to = size > 1024 ? sr_arena_alloc(d->data, size + 16) : sr_pbrt_words(d, size + 16);
+    bool is_kept = size > SR_PBRT_SHORT_RUN_B && (storage == INTS || p->type == SR_PBRT_POINT2 || p->type == SR_PBRT_VECTOR2 || p->type == SR_PBRT_FLOAT);
+    void *to = is_kept ? sr_arena_alloc(d->data, size + 16) : sr_pbrt_words(d, size + 16);
     if (!to)
         return no_memory(p, error);
     if (size)

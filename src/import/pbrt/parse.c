@@ -116,6 +116,7 @@ static sr_status read_text(struct sr_pbrt_parser *p, const char *path, const cha
     struct sr_pbrt_token token;
     p->lexer = &lexer;
     p->d->text_B += size;
+    p->d->hash = sr_pbrt_hash(p->d->hash, text, size);
     sr_status status;
     while ((status = sr_pbrt_lexer_next(&lexer, &token, p->error)) == SR_OK && token.kind != SR_PBRT_END)
         if ((status = read_directive(p, &token)) != SR_OK)

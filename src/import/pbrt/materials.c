@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: MIT */
+/* Materials, made when the first shape wears them: model, textures, bump and normal map. */
+#include "import/pbrt/build.h"
+
+#include <string.h>
+
+/* What every material has besides its model's own. */
+struct common {
+    struct sr_texture displacement;
+    const char *normal_map;
+};
+static const struct sr_param common_params[] = {
+    {SR_PARAM_FLOAT_TEXTURE, "displacement", "m", -INFINITY, INFINITY, NAN, offsetof(struct common, displacement), "bump"},
+    {SR_PARAM_STRING, "normalmap", "1", 0, 0, NAN, offsetof(struct common, normal_map), NULL},
+    {.name = NULL},
+};
+
+static bool is_interface(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e)
+{
+    bool is_old = e->model[0] == 0 || strcmp(e->model, "none") == 0;
+    if (is_old)
+        sr_pbrt_warn(b->d, e->where, "%s \"%s\" is deprecated: \"interface\" is the name of the material that is none", e->directive, e->model);
+    return is_old || strcmp(e->model, "interface") == 0;
+}
+
+static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, struct sr_material **out)
+{
+    *out = NULL;
+    if (is_interface(b, e))
+        return SR_OK;
+    const struct sr_material_model *m = sr_material_model_find(e->model);
+    if (!m) {
+        const char *names[40];
+        size_t n = 0;
+        for (; sr_material_models[n] && n < 39; ++n)
+            names[n] = sr_material_models[n]->name;
+        names[n++] = "interface";
+        return sr_pbrt_unsupported(b, e, names, n);
+    }
+    struct sr_material *material = sr_arena_alloc(b->arena, sizeof *material);
+    void *self = sr_arena_alloc(b->arena, m->size);
+    struct common common = {{NULL, NULL}, NULL};
+    if (!material || !self)
+        return sr_pbrt_no_memory(b);
+    sr_status status = sr_pbrt_bind(b, m->params, e, (struct sr_pbrt_use){SR_PARAM_ALBEDO, false}, self);
+    if (status == SR_OK)
+        status = sr_pbrt_bind(b, common_params, e, (struct sr_pbrt_use){SR_PARAM_ALBEDO, false}, &common);
+    if (status == SR_OK && common.normal_map) // directions, so linear
+        status = sr_pbrt_texels(b, common.normal_map, sr_pbrt_find(&e->params, "normalmap")->where, 1, true, &material->normal_map);
+    if (status == SR_OK && common.normal_map && material->normal_map.channels < 3)
+        status = sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "%s \"%s\": the normal map is grey: expected red, green and blue", e->directive, e->model);
+    if (status != SR_OK)
+        return status;
+    struct sr_error inner = {0};
+    if (m->prepare && m->prepare(self, b->arena, &inner) != SR_OK)
+        return sr_pbrt_wrap(b, e, &inner);
+    material->model = m;
+    material->self = self;
+    material->displacement = common.displacement;
+    sr_pbrt_warn_unused(b, e, m->params, common_params);
+    *out = material;
+    return SR_OK;
+}
+
+static sr_status get(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, struct sr_pbrt_built_material *built, const struct sr_material **out)
+{
+    if (built->is_being_made)
+        return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "%s \"%s\" is a mix of itself", e->directive, e->name ? e->name : e->model);
+    if (!built->is_made) {
+        built->is_being_made = true;
+        sr_status status = make(b, e, &built->material);
+        built->is_being_made = false;
+        if (status != SR_OK)
+            return status;
+        built->is_made = true;
+    }
+    *out = built->material;
+    return SR_OK;
+}
+
+sr_status sr_pbrt_material(struct sr_pbrt_build *b, const struct sr_pbrt_material_ref *ref, const struct sr_material **out)
+{
+    if (!ref->name)
+        return get(b, SR_PBRT_AT(b->d->materials, struct sr_pbrt_entity, ref->index), &b->materials[ref->index], out);
+    struct sr_pbrt_suggestion s = {.word = ref->name};
+    char buffer[160];
+    for (size_t i = 0; i < b->d->named_materials.count; ++i) {
+        const struct sr_pbrt_entity *e = SR_PBRT_AT(b->d->named_materials, struct sr_pbrt_entity, i);
+        if (strcmp(e->name, ref->name) == 0)
+            return get(b, e, &b->materials[b->d->materials.count + i], out);
+        sr_pbrt_suggest(&s, e->name);
+    }
+    return sr_pbrt_fail(b->d, ref->where, b->error, SR_ERROR_INPUT, "there is no material named \"%s\"%s", ref->name, sr_pbrt_suggestion_text(&s, buffer));
+}
+
+sr_status sr_pbrt_materials(struct sr_pbrt_build *b, const struct sr_pbrt_param *p, struct sr_slice *out)
+{
+    const struct sr_material **list = sr_arena_alloc(b->arena, p->count * sizeof *list);
+    if (!list)
+        return sr_pbrt_no_memory(b);
+    for (uint32_t i = 0; i < p->count; ++i) {
+        struct sr_pbrt_material_ref ref = {0, p->strings[i], p->where};
+        sr_status status = sr_pbrt_material(b, &ref, &list[i]);
+        if (status != SR_OK)
+            return status;
+        if (!list[i])
+            return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"string %s\": \"%s\" is an interface, which cannot be mixed", p->name, p->strings[i]);
+    }
+    *out = (struct sr_slice){list, p->count};
+    return SR_OK;
+}

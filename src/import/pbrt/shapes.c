@@ -1,0 +1,334 @@
+/* SPDX-License-Identifier: MIT */
+/* Shapes, objects and instances. PLY files are read ahead, several at a time; everything is added in the file's order. */
+#include "import/pbrt/build.h"
+#include "import/ply.h"
+
+#include <string.h>
+
+/* What every shape has besides its model's own, and what a PLY mesh has. */
+struct common {
+    struct sr_texture alpha;
+};
+static const struct sr_param common_params[] = {
+    {SR_PARAM_FLOAT_TEXTURE, "alpha", "1", -INFINITY, INFINITY, NAN, offsetof(struct common, alpha), "opacity"},
+    {.name = NULL},
+};
+static const struct sr_param ply_params[] = {
+    {.kind = SR_PARAM_FILE, .name = "filename"}, {.kind = SR_PARAM_FLOAT_TEXTURE, .name = "displacement"}, {.kind = SR_PARAM_FLOAT, .name = "edgelength"}, {.name = NULL},
+};
+
+struct loaded {
+    const char *path; // NULL: no PLY mesh
+    struct sr_ply_mesh mesh;
+    struct sr_error error;
+    uint64_t hash;
+};
+
+struct adder {
+    struct sr_pbrt_build *b;
+    sr_object_id *objects;
+    struct loaded *window;
+    size_t window_start, window_size;
+    bool has_warned_object_light, has_warned_displacement;
+    uint32_t emission_of; // area_light1 of
+    const struct sr_light_emission *emission;
+};
+
+static bool is_ply(const struct sr_pbrt_shape *s)
+{
+    return strcmp(s->entity.model, "plymesh") == 0;
+}
+
+/* ---- reading ahead ---- */
+
+static void load_one(void *context, uint64_t i)
+{
+    struct loaded *l = &((struct loaded *)context)[i];
+    char *data;
+    size_t size;
+    if (!l->path || sr_file_read(l->path, (size_t)64 << 30, &data, &size, &l->error) != SR_OK)
+        return;
+    l->hash = sr_pbrt_hash(0, data, size);
+    sr_ply_decode(l->path, data, size, &l->mesh, &l->error);
+    sr_free(data);
+}
+
+static void free_window(struct adder *a)
+{
+    for (size_t i = 0; i < a->window_size; ++i)
+        sr_ply_free(&a->window[i].mesh);
+    sr_free(a->window);
+    a->window = NULL;
+    a->window_size = 0;
+}
+
+static sr_status load_window(struct adder *a, size_t start, size_t size)
+{
+    struct sr_pbrt_build *b = a->b;
+    a->window = sr_alloc(size * sizeof *a->window);
+    if (!a->window)
+        return sr_pbrt_no_memory(b);
+    a->window_start = start;
+    a->window_size = size;
+    size_t files = 0;
+    for (size_t i = 0; i < size; ++i) {
+        const struct sr_pbrt_shape *s = SR_PBRT_AT(b->d->shapes, struct sr_pbrt_shape, start + i);
+        const char *name = NULL;
+        if (!is_ply(s))
+            continue;
+        if (sr_pbrt_get_string(b->d, &s->entity.params, "filename", &name, b->error) != SR_OK)
+            return b->error->status;
+        if (!name)
+            return sr_pbrt_fail(b->d, s->entity.where, b->error, SR_ERROR_INPUT, "Shape \"plymesh\": expected \"string filename\"");
+        if (!(a->window[i].path = sr_pbrt_resolve(b, &b->scratch, name, s->entity.where)))
+            return sr_pbrt_no_memory(b);
+        ++files;
+    }
+    if (files)
+        sr_parallel_for(b->threads, size, load_one, a->window);
+    return SR_OK;
+}
+
+/* ---- one shape ---- */
+
+static float area_of(struct sr_shape shape)
+{
+    double sum = 0;
+    uint32_t n = shape.model->primitive_count(shape.self);
+    for (uint32_t i = 0; i < n; ++i)
+        sum += (double)shape.model->area(shape.self, i);
+    return (float)sum;
+}
+
+static sr_status prepare(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, const struct sr_shape_model *m, void *self, struct sr_shape *out)
+{
+    struct sr_shape_placement placement = {sr_pbrt_transform_of(b, s->entity.transform)->start, s->reverse_orientation};
+    struct sr_error inner = {0};
+    *out = (struct sr_shape){m, self};
+    return m->prepare(self, &placement, b->arena, &inner) == SR_OK ? SR_OK : sr_pbrt_wrap(b, &s->entity, &inner);
+}
+
+static sr_status copy_run(struct sr_pbrt_build *b, const void *from, size_t count, size_t size, struct sr_slice *out)
+{
+    *out = (struct sr_slice){NULL, 0};
+    if (!from || count == 0)
+        return SR_OK;
+    void *to = sr_arena_alloc(b->arena, count * size + 16);
+    if (!to)
+        return sr_pbrt_no_memory(b);
+    memcpy(to, from, count * size);
+    *out = (struct sr_slice){to, (uint32_t)count};
+    return SR_OK;
+}
+
+/* Quads go around the face, patches go by rows: the last two change places. */
+static void reorder_quads(int32_t *indices, uint32_t quads)
+{
+    for (uint32_t i = 0; i < quads; ++i) {
+        int32_t *q = indices + 4 * (size_t)i, third = q[2];
+        q[2] = q[3];
+        q[3] = third;
+    }
+}
+
+static sr_status make_triangles(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, const struct sr_ply_mesh *ply, struct sr_slice uv, struct sr_shape *out)
+{
+    struct sr_shape_mesh *m = sr_arena_alloc(b->arena, sizeof *m);
+    if (!m)
+        return sr_pbrt_no_memory(b);
+    m->P = (struct sr_slice){ply->P, ply->vertex_count};
+    m->N = (struct sr_slice){ply->N, ply->N ? ply->vertex_count : 0};
+    m->uv = uv;
+    sr_status status = copy_run(b, ply->triangles, 3 * (size_t)ply->triangle_count, sizeof(int32_t), &m->indices);
+    if (status == SR_OK)
+        status = copy_run(b, ply->face_indices, ply->triangle_count, sizeof(int32_t), &m->face_indices);
+    return status == SR_OK ? prepare(b, s, &sr_shape_trianglemesh, m, out) : status;
+}
+
+/* Patches, of which those that are flat parallelograms become triangles unless they shine. */
+static sr_status add_patches(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, struct sr_shape_patches *patches, struct sr_shape shapes[], int *count)
+{
+    struct sr_shape_mesh *triangles = sr_arena_alloc(b->arena, sizeof *triangles);
+    struct sr_shape_patches *rest = sr_arena_alloc(b->arena, sizeof *rest);
+    if (!triangles || !rest)
+        return sr_pbrt_no_memory(b);
+    *rest = *patches;
+    uint32_t moved = s->area_light1 ? 0 : sr_shape_split_planar_quads(patches, b->arena, triangles, rest);
+    if (moved == UINT32_MAX)
+        return sr_pbrt_no_memory(b);
+    sr_status status = SR_OK;
+    uint32_t all = patches->indices.count ? patches->indices.count / 4 : 1;
+    if (moved)
+        status = prepare(b, s, &sr_shape_trianglemesh, triangles, &shapes[(*count)++]);
+    if (status == SR_OK && moved < all)
+        status = prepare(b, s, &sr_shape_bilinearmesh, rest, &shapes[(*count)++]);
+    return status;
+}
+
+static sr_status make_quads(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, const struct sr_ply_mesh *ply, struct sr_slice uv, struct sr_shape shapes[], int *count)
+{
+    struct sr_shape_patches m = {.P = {ply->P, ply->vertex_count}, .N = {ply->N, ply->N ? ply->vertex_count : 0}, .uv = uv};
+    sr_status status = copy_run(b, ply->quads, 4 * (size_t)ply->quad_count, sizeof(int32_t), &m.indices);
+    if (status == SR_OK)
+        status = copy_run(b, ply->face_indices ? ply->face_indices + ply->triangle_count : NULL, ply->quad_count, sizeof(int32_t), &m.face_indices);
+    if (status != SR_OK)
+        return status;
+    reorder_quads((int32_t *)(uintptr_t)m.indices.data, ply->quad_count);
+    return add_patches(b, s, &m, shapes, count);
+}
+
+static sr_status make_ply(struct adder *a, const struct sr_pbrt_shape *s, struct loaded *l, struct sr_shape shapes[], int *count)
+{
+    struct sr_pbrt_build *b = a->b;
+    const struct sr_pbrt_params *params = &s->entity.params;
+    if (l->error.status != SR_OK)
+        return sr_pbrt_fail(b->d, s->entity.where, b->error, l->error.status, "%s", l->error.text);
+    b->hash = sr_pbrt_hash(b->hash, &l->hash, sizeof l->hash);
+    if (sr_pbrt_find(params, "displacement") && !a->has_warned_displacement) {
+        a->has_warned_displacement = true;
+        sr_pbrt_warn(b->d, s->entity.where, "Shape \"plymesh\": \"displacement\" is not supported yet, the mesh stays as it is");
+    }
+    sr_pbrt_find(params, "edgelength");
+    struct sr_ply_mesh *ply = &l->mesh;
+    if (ply->fan_count)
+        sr_pbrt_warn(b->d, s->entity.where, "%s: %u faces have more than four corners: each became a fan of triangles", l->path, ply->fan_count);
+    if (ply->dropped_count)
+        sr_pbrt_warn(b->d, s->entity.where, "%s: %u faces have fewer than three corners: left out", l->path, ply->dropped_count);
+    struct sr_slice uv;
+    sr_status status = copy_run(b, ply->uv, ply->vertex_count, sizeof(sr_vec2), &uv);
+    if (status == SR_OK && ply->triangle_count)
+        status = make_triangles(b, s, ply, uv, &shapes[(*count)++]);
+    if (status == SR_OK && ply->quad_count)
+        status = make_quads(b, s, ply, uv, shapes, count);
+    sr_ply_free(ply);
+    return status;
+}
+
+static sr_status unsupported_shape(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e)
+{
+    const char *names[40];
+    size_t n = 0;
+    for (; sr_shape_models[n] && n < 39; ++n)
+        names[n] = sr_shape_models[n]->name;
+    names[n++] = "plymesh";
+    return sr_pbrt_unsupported(b, e, names, n);
+}
+
+static sr_status make_shape(struct adder *a, const struct sr_pbrt_shape *s, struct loaded *l, struct sr_shape shapes[], int *count)
+{
+    struct sr_pbrt_build *b = a->b;
+    if (is_ply(s))
+        return make_ply(a, s, l, shapes, count);
+    const struct sr_shape_model *m = sr_shape_model_find(s->entity.model);
+    if (!m)
+        return unsupported_shape(b, &s->entity);
+    void *self = sr_arena_alloc(b->arena, m->size);
+    if (!self)
+        return sr_pbrt_no_memory(b);
+    sr_status status = sr_pbrt_bind(b, m->params, &s->entity, (struct sr_pbrt_use){SR_PARAM_ALBEDO, false}, self);
+    return status == SR_OK ? prepare(b, s, m, self, &shapes[(*count)++]) : status;
+}
+
+static sr_status find_emission(struct adder *a, const struct sr_pbrt_shape *s, const struct sr_shape shapes[], int count, const struct sr_light_emission **out)
+{
+    struct sr_pbrt_build *b = a->b;
+    *out = NULL;
+    if (!s->area_light1)
+        return SR_OK;
+    if (s->object1) {
+        if (!a->has_warned_object_light)
+            sr_pbrt_warn(b->d, s->entity.where, "a shape of an object cannot shine: its area light is left out, as pbrt does");
+        a->has_warned_object_light = true;
+        return SR_OK;
+    }
+    if (a->emission_of == s->area_light1 && !(a->emission->power >= 0)) { // the same for every area
+        *out = a->emission;
+        return SR_OK;
+    }
+    float area = 0;
+    for (int i = 0; i < count; ++i)
+        area += area_of(shapes[i]);
+    sr_status status = sr_pbrt_emission(b, s->area_light1, area, out);
+    a->emission_of = status == SR_OK ? s->area_light1 : 0;
+    a->emission = *out;
+    return status;
+}
+
+static sr_status add_shape(struct adder *a, const struct sr_pbrt_shape *s, struct loaded *l)
+{
+    struct sr_pbrt_build *b = a->b;
+    struct sr_shape shapes[4];
+    int count = 0;
+    struct common common = {{NULL, NULL}};
+    struct sr_shape_def def = {.object = s->object1 ? a->objects[s->object1 - 1] : (sr_object_id){0}};
+    sr_status status = sr_pbrt_refuse_medium(b, s->inside, s->medium_where);
+    if (status == SR_OK)
+        status = sr_pbrt_refuse_medium(b, s->outside, s->medium_where);
+    if (status == SR_OK)
+        status = sr_pbrt_material(b, &s->material, &def.material);
+    if (status == SR_OK)
+        status = sr_pbrt_bind(b, common_params, &s->entity, (struct sr_pbrt_use){SR_PARAM_ALBEDO, false}, &common);
+    if (status == SR_OK)
+        status = make_shape(a, s, l, shapes, &count);
+    if (status == SR_OK)
+        status = find_emission(a, s, shapes, count, &def.emission);
+    if (status != SR_OK)
+        return status;
+    float alpha;
+    bool is_opaque = !common.alpha.model || (sr_texture_is_constant_float(common.alpha, &alpha) && alpha >= 1);
+    def.alpha = is_opaque ? (struct sr_texture){NULL, NULL} : common.alpha;
+    for (int i = 0; i < count; ++i) {
+        def.shape = shapes[i];
+        sr_scene_add_shape(b->result->scene, &def);
+    }
+    const struct sr_shape_model *m = is_ply(s) ? NULL : shapes[0].model;
+    sr_pbrt_warn_unused(b, &s->entity, m ? m->params : ply_params, common_params);
+    return SR_OK;
+}
+
+/* ---- all of them ---- */
+
+static sr_status add_instances(struct adder *a)
+{
+    struct sr_pbrt_build *b = a->b;
+    const struct sr_pbrt_object *objects = b->d->objects.data;
+    for (size_t i = 0; i < b->d->instances.count; ++i) {
+        const struct sr_pbrt_instance *instance = SR_PBRT_AT(b->d->instances, struct sr_pbrt_instance, i);
+        struct sr_pbrt_suggestion s = {.word = instance->name};
+        char buffer[160];
+        size_t k = 0;
+        while (k < b->d->objects.count && strcmp(objects[k].name, instance->name) != 0)
+            sr_pbrt_suggest(&s, objects[k++].name);
+        if (k == b->d->objects.count)
+            return sr_pbrt_fail(b->d, instance->where, b->error, SR_ERROR_INPUT, "ObjectInstance \"%s\": no object has this name%s", instance->name,
+                                sr_pbrt_suggestion_text(&s, buffer));
+        if (a->objects[k].index1)
+            sr_scene_add_instance(b->result->scene, a->objects[k], &sr_pbrt_transform_of(b, instance->transform)->start);
+    }
+    return SR_OK;
+}
+
+static sr_status build(struct adder *a)
+{
+    struct sr_pbrt_build *b = a->b;
+    const struct sr_pbrt_shape *shapes = b->d->shapes.data;
+    size_t n = b->d->shapes.count, window = 32 * (size_t)b->threads;
+    for (size_t i = 0; i < n; ++i) // empty objects stay out
+        if (shapes[i].object1 && !a->objects[shapes[i].object1 - 1].index1)
+            a->objects[shapes[i].object1 - 1] = sr_scene_add_object(b->result->scene);
+    sr_status status = SR_OK;
+    for (size_t start = 0; start < n && status == SR_OK; start += window) {
+        size_t size = n - start < window ? n - start : window;
+        status = load_window(a, start, size);
+        for (size_t i = 0; i < size && status == SR_OK; ++i)
+            status = add_shape(a, &shapes[start + i], &a->window[i]);
+        free_window(a);
+    }
+    return status == SR_OK ? add_instances(a) : status;
+}
+
+sr_status sr_pbrt_build_shapes(struct sr_pbrt_build *b)
+{
+    struct adder a = {.b = b, .objects = sr_arena_alloc(&b->scratch, b->d->objects.count * sizeof(sr_object_id))};
+    return a.objects ? build(&a) : sr_pbrt_no_memory(b);
+}

@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: MIT */
+/* Named textures, made when something asks for them, once for each use: a float, or a spectrum that is an albedo, an
+ * unbounded quantity or an emission, for that decides what RGB means. */
+#include "import/pbrt/build.h"
+
+#include <string.h>
+
+static sr_status unknown_texture(struct sr_pbrt_build *b, const struct sr_pbrt_param *p, bool is_float)
+{
+    const char *type = is_float ? "float" : "spectrum";
+    struct sr_pbrt_suggestion s = {.word = p->strings[0]};
+    char buffer[160];
+    for (size_t i = 0; i < b->d->textures.count; ++i) {
+        const struct sr_pbrt_texture *t = SR_PBRT_AT(b->d->textures, struct sr_pbrt_texture, i);
+        if (t->is_float == is_float)
+            sr_pbrt_suggest(&s, t->entity.name);
+        else if (strcmp(t->entity.name, p->strings[0]) == 0)
+            return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"texture %s\": \"%s\" is a %s texture: expected a %s texture", p->name,
+                                p->strings[0], is_float ? "spectrum" : "float", type);
+    }
+    return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"texture %s\": there is no %s texture \"%s\"%s", p->name, type, p->strings[0],
+                        sr_pbrt_suggestion_text(&s, buffer));
+}
+
+static sr_status bind_image(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, struct sr_texels *texels)
+{
+    const char *name = NULL, *encoding = NULL;
+    float gamma;
+    if (sr_pbrt_get_string(b->d, &e->params, "filename", &name, b->error) != SR_OK ||
+        sr_pbrt_get_string(b->d, &e->params, "encoding", &encoding, b->error) != SR_OK || sr_pbrt_encoding(b, e, encoding, &gamma) != SR_OK)
+        return b->error->status;
+    if (!name)
+        return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "Texture \"%s\": expected \"string filename\"", e->name);
+    return sr_pbrt_texels(b, name, sr_pbrt_find(&e->params, "filename")->where, gamma, false, texels);
+}
+
+static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_texture *t, struct sr_pbrt_bound_texture *bound, enum sr_param_kind use,
+                      struct sr_texture *out)
+{
+    const struct sr_pbrt_entity *e = &t->entity;
+    const struct sr_texture_model *m = sr_texture_model_find(e->model, t->is_float);
+    if (!m) {
+        const char *names[32];
+        size_t n = 0;
+        for (int i = 0; sr_texture_models[i] && n < 32; ++i)
+            if (sr_texture_models[i]->is_float == t->is_float)
+                names[n++] = sr_texture_models[i]->name;
+        return sr_pbrt_unsupported(b, e, names, n);
+    }
+    char *self = sr_arena_alloc(b->arena, m->size);
+    if (!self)
+        return sr_pbrt_no_memory(b);
+    struct sr_pbrt_use binding = {t->is_float ? SR_PARAM_ALBEDO : use, !t->is_float};
+    sr_status status = sr_pbrt_bind(b, m->params, e, binding, self);
+    struct sr_transform world_to_texture = sr_transform_invert(&sr_pbrt_transform_of(b, e->transform)->start);
+    bool is_2d = m->mapping_offset != SR_TEXTURE_NOWHERE;
+    if (status == SR_OK && is_2d) {
+        struct sr_mapping *mapping = (struct sr_mapping *)(self + m->mapping_offset);
+        status = sr_pbrt_bind(b, sr_mapping_params, e, binding, mapping);
+        mapping->world_to_texture = world_to_texture;
+    }
+    if (m->transform_offset != SR_TEXTURE_NOWHERE)
+        *(struct sr_transform *)(self + m->transform_offset) = world_to_texture;
+    if (status == SR_OK && m->texels_offset != SR_TEXTURE_NOWHERE)
+        status = bind_image(b, e, (struct sr_texels *)(self + m->texels_offset));
+    if (status != SR_OK)
+        return status;
+    struct sr_error inner = {0};
+    if (m->prepare && m->prepare(self, (struct sr_texture_use){use, e->space}, b->arena, &inner) != SR_OK)
+        return sr_pbrt_wrap(b, e, &inner);
+    if (!bound->has_warned)
+        sr_pbrt_warn_unused(b, e, m->params, is_2d ? sr_mapping_params : NULL);
+    bound->has_warned = true;
+    *out = (struct sr_texture){m, self};
+    return SR_OK;
+}
+
+sr_status sr_pbrt_named_texture(struct sr_pbrt_build *b, const struct sr_pbrt_param *p, bool is_float, enum sr_param_kind use, struct sr_texture *out)
+{
+    size_t i = 0;
+    const struct sr_pbrt_texture *t = NULL;
+    for (; i < b->d->textures.count; ++i) {
+        t = SR_PBRT_AT(b->d->textures, struct sr_pbrt_texture, i);
+        if (t->is_float == is_float && strcmp(t->entity.name, p->strings[0]) == 0)
+            break;
+    }
+    if (i == b->d->textures.count)
+        return unknown_texture(b, p, is_float);
+    struct sr_pbrt_bound_texture *bound = &b->textures[i];
+    int slot = is_float ? 0 : use == SR_PARAM_ALBEDO ? 1 : use == SR_PARAM_UNBOUNDED ? 2 : 3;
+    if (bound->made[slot].model) {
+        *out = bound->made[slot];
+        return SR_OK;
+    }
+    if (bound->is_being_made)
+        return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"texture %s\": texture \"%s\" is made of itself", p->name, p->strings[0]);
+    bound->is_being_made = true;
+    sr_status status = make(b, t, bound, use, &bound->made[slot]);
+    bound->is_being_made = false;
+    *out = bound->made[slot];
+    return status;
+}
