@@ -1,0 +1,319 @@
+/* SPDX-License-Identifier: MIT */
+/* Film, pixel filter, camera, sampler, integrator and options: everything that a render needs besides the scene.
+ *
+ * With a crop window the pixels ceil(width x0) ... ceil(width x1) - 1 are rendered, and likewise in y. */
+#include "import/pbrt/build.h"
+
+#include <string.h>
+
+static const struct sr_pbrt_use plain = {SR_PARAM_ALBEDO, false};
+
+/* ---- film ---- */
+
+struct film {
+    int32_t width, height;
+    float iso, white_balance, max_component, diagonal;
+    bool savefp16;
+    const char *sensor, *filename;
+    struct sr_slice crop_window, pixel_bounds;
+};
+#define MEMBER(name) offsetof(struct film, name)
+static const struct sr_param film_params[] = {
+    {SR_PARAM_INT, "xresolution", "pixel", 1, 1 << 20, 1280, MEMBER(width), "width"},
+    {SR_PARAM_INT, "yresolution", "pixel", 1, 1 << 20, 720, MEMBER(height), "height"},
+    {SR_PARAM_FLOATS, "cropwindow", "1", 0, 1, NAN, MEMBER(crop_window), "x0 x1 y0 y1 as shares of the picture"},
+    {SR_PARAM_INTS, "pixelbounds", "pixel", 0, 1 << 20, NAN, MEMBER(pixel_bounds), "x0 x1 y0 y1"},
+    {SR_PARAM_FLOAT, "diagonal", "mm", 0, INFINITY, 35, MEMBER(diagonal), "read; only a realistic camera would use it"},
+    {SR_PARAM_FLOAT, "iso", "1", 0, INFINITY, 100, MEMBER(iso), "the picture times iso/100"},
+    {SR_PARAM_FLOAT, "whitebalance", "K", 0, INFINITY, 0, MEMBER(white_balance), "correlated colour temperature; 0: none"},
+    {SR_PARAM_FLOAT, "maxcomponentvalue", "1", 0, INFINITY, INFINITY, MEMBER(max_component), "larger components are scaled down"},
+    {SR_PARAM_BOOL, "savefp16", "1", 0, 1, 1, MEMBER(savefp16), "read; files are written with 32 bits"},
+    {SR_PARAM_STRING, "sensor", "1", 0, 0, 0, MEMBER(sensor), "cie1931"},
+    {SR_PARAM_STRING, "filename", "1", 0, 0, NAN, MEMBER(filename), NULL},
+    {.name = NULL},
+};
+
+static int32_t clamp_int(double v, int32_t lo, int32_t hi)
+{
+    return v < lo ? lo : v > hi ? hi : (int32_t)v;
+}
+
+static sr_status set_region(struct sr_pbrt_build *b, const struct film *f, struct sr_film_settings *s)
+{
+    const struct sr_import_options *o = b->options;
+    const float *crop = o->has_crop ? o->crop_window : f->crop_window.count == 4 ? f->crop_window.data : NULL;
+    const int32_t *bounds = o->has_pixel_bounds ? o->pixel_bounds : f->pixel_bounds.count == 4 ? f->pixel_bounds.data : NULL;
+    if ((f->crop_window.count && f->crop_window.count != 4) || (f->pixel_bounds.count && f->pixel_bounds.count != 4))
+        return sr_pbrt_fail(b->d, b->d->film.where, b->error, SR_ERROR_INPUT, "Film: cropwindow and pixelbounds: expected four numbers, x0 x1 y0 y1");
+    if (o->has_crop && !o->has_pixel_bounds)
+        bounds = NULL;
+    int32_t w = s->width, h = s->height;
+    s->x0 = s->y0 = 0;
+    s->x1 = w;
+    s->y1 = h;
+    if (bounds) { // counted in the picture of the file's own size
+        double x = o->has_pixel_bounds ? 1 : (double)w / f->width, y = o->has_pixel_bounds ? 1 : (double)h / f->height;
+        s->x0 = clamp_int(ceil(bounds[0] * x), 0, w);
+        s->x1 = clamp_int(ceil(bounds[1] * x), 0, w);
+        s->y0 = clamp_int(ceil(bounds[2] * y), 0, h);
+        s->y1 = clamp_int(ceil(bounds[3] * y), 0, h);
+    } else if (crop) {
+        s->x0 = clamp_int(ceil((double)w * (double)fminf(crop[0], crop[1])), 0, w);
+        s->x1 = clamp_int(ceil((double)w * (double)fmaxf(crop[0], crop[1])), 0, w);
+        s->y0 = clamp_int(ceil((double)h * (double)fminf(crop[2], crop[3])), 0, h);
+        s->y1 = clamp_int(ceil((double)h * (double)fmaxf(crop[2], crop[3])), 0, h);
+    }
+    if (s->x0 >= s->x1 || s->y0 >= s->y1)
+        return sr_pbrt_fail(b->d, b->d->film.where, b->error, SR_ERROR_INPUT, "Film: no pixel is inside of the part to render, x %d to %d, y %d to %d",
+                            (int)s->x0, (int)s->x1, (int)s->y0, (int)s->y1);
+    return SR_OK;
+}
+
+/* "scene.exr" for "folder/scene.pbrt" */
+static const char *default_filename(struct sr_pbrt_build *b)
+{
+    const char *slash = strrchr(b->main_path, '/'), *name = slash ? slash + 1 : b->main_path;
+    const char *dot = strstr(name, ".pbrt");
+    if (strcmp(name, "-") == 0)
+        return "steradian.exr";
+    return sr_arena_printf(b->arena, "%.*s.exr", dot ? (int)(dot - name) : (int)strlen(name), name);
+}
+
+static sr_status build_film(struct sr_pbrt_build *b)
+{
+    const struct sr_pbrt_entity *e = &b->d->film;
+    const char *const supported[] = {"rgb"}, *const sensors[] = {"cie1931"};
+    struct film f = {0};
+    if (strcmp(e->model, "rgb") != 0)
+        return sr_pbrt_unsupported(b, e, supported, 1);
+    sr_status status = sr_pbrt_bind(b, film_params, e, plain, &f);
+    if (status != SR_OK)
+        return status;
+    if (strcmp(f.sensor, sensors[0]) != 0)
+        return sr_pbrt_fail(b->d, sr_pbrt_find(&e->params, "sensor")->where, b->error, SR_ERROR_INPUT, "sensor \"%s\" is not supported yet; supported: %s", f.sensor, sensors[0]);
+    const struct sr_import_options *o = b->options;
+    int32_t w = o->width ? clamp_int(o->width, 1, 1 << 20) : f.width, h = o->height ? clamp_int(o->height, 1, 1 << 20) : f.height;
+    if (o->quick) {
+        w = w > 4 ? w / 4 : 1;
+        h = h > 4 ? h / 4 : 1;
+    }
+    const char *filename = f.filename && f.filename[0] ? f.filename : default_filename(b);
+    if (!filename)
+        return sr_pbrt_no_memory(b);
+    b->result->film = (struct sr_film_settings){.width = w,
+                                                .height = h,
+                                                .space = b->d->film_space,
+                                                .iso = f.iso,
+                                                .exposure_time = 1,
+                                                .white_balance = f.white_balance,
+                                                .max_component = f.max_component,
+                                                .filename = filename};
+    sr_pbrt_warn_unused(b, e, film_params, NULL);
+    return set_region(b, &f, &b->result->film);
+}
+
+/* ---- filter ---- */
+
+static sr_status build_filter(struct sr_pbrt_build *b)
+{
+    const struct sr_pbrt_entity *e = &b->d->filter;
+    const struct sr_filter_model *m = sr_filter_model_find(e->model);
+    if (!m) {
+        const char *names[16];
+        size_t n = 0;
+        for (; sr_filter_models[n] && n < 16; ++n)
+            names[n] = sr_filter_models[n]->name;
+        return sr_pbrt_unsupported(b, e, names, n);
+    }
+    void *self = sr_arena_alloc(b->arena, m->size);
+    if (!self)
+        return sr_pbrt_no_memory(b);
+    sr_status status = sr_pbrt_bind(b, m->params, e, plain, self);
+    if (status != SR_OK)
+        return status;
+    struct sr_error inner = {0};
+    if (sr_filter_prepare(b->arena, m, self, &b->result->filter, &inner) != SR_OK)
+        return sr_pbrt_wrap(b, e, &inner);
+    sr_pbrt_warn_unused(b, e, m->params, NULL);
+    return SR_OK;
+}
+
+/* ---- camera ---- */
+
+static sr_status build_sensor(struct sr_pbrt_build *b)
+{
+    const struct sr_pbrt_entity *e = &b->d->camera;
+    const struct sr_sensor_model *m = sr_sensor_model_find(e->model);
+    if (!m) {
+        const char *names[16];
+        size_t n = 0;
+        for (; sr_sensor_models[n] && n < 16; ++n)
+            names[n] = sr_sensor_models[n]->name;
+        return sr_pbrt_unsupported(b, e, names, n);
+    }
+    sr_status status = sr_pbrt_refuse_medium(b, b->d->camera_medium, b->d->camera_medium_where);
+    void *self = sr_arena_alloc(b->arena, m->size);
+    if (!self)
+        return sr_pbrt_no_memory(b);
+    if (status == SR_OK)
+        status = sr_pbrt_bind(b, m->params, e, plain, self);
+    if (status != SR_OK)
+        return status;
+    struct sr_transform camera_to_world = sr_transform_invert(&sr_pbrt_transform_of(b, e->transform)->start);
+    struct sr_sensor_raster raster = {(uint32_t)b->result->film.width, (uint32_t)b->result->film.height};
+    struct sr_error inner = {0};
+    if (m->prepare(self, raster, &camera_to_world, b->arena, &inner) != SR_OK)
+        return sr_pbrt_wrap(b, e, &inner);
+    b->result->sensor = (struct sr_sensor){m, self};
+    // what a sensor without colour curves of its own makes of the shutter: the picture times the seconds
+    const struct sr_sensor_common *common = self;
+    b->result->film.exposure_time = common->shutter_close - common->shutter_open;
+    if (!(b->result->film.exposure_time > 0)) {
+        sr_pbrt_warn(b->d, e->where, "the shutter closes when it opens and the picture would be black: taken as open for 1 s");
+        b->result->film.exposure_time = 1;
+    }
+    sr_pbrt_warn_unused(b, e, m->params, NULL);
+    return SR_OK;
+}
+
+/* ---- sampler ---- */
+
+struct sampler {
+    int32_t spp, x_samples, y_samples, seed;
+    bool jitter;
+    const char *randomization;
+};
+static const struct sr_param sampler_params[] = {
+    {SR_PARAM_INT, "pixelsamples", "1", 1, 1 << 30, NAN, offsetof(struct sampler, spp), "samples per pixel"},
+    {SR_PARAM_INT, "xsamples", "1", 1, 1 << 15, 4, offsetof(struct sampler, x_samples), "of stratified"},
+    {SR_PARAM_INT, "ysamples", "1", 1, 1 << 15, 4, offsetof(struct sampler, y_samples), "of stratified"},
+    {SR_PARAM_BOOL, "jitter", "1", 0, 1, 1, offsetof(struct sampler, jitter), "of stratified; read"},
+    {SR_PARAM_INT, "seed", "1", INT32_MIN, INT32_MAX, 0, offsetof(struct sampler, seed), "of the random numbers"},
+    {SR_PARAM_STRING, "randomization", "1", 0, 0, 0, offsetof(struct sampler, randomization), "read; nets are Owen-scrambled"},
+    {.name = NULL},
+};
+
+static sr_status build_sampler(struct sr_pbrt_build *b)
+{
+    static const char *const names[] = {"zsobol", "paddedsobol", "halton", "sobol", "pmj02bn", "stratified", "independent"};
+    const struct sr_pbrt_entity *e = &b->d->sampler;
+    size_t n = sizeof names / sizeof *names, i = 0;
+    while (i < n && strcmp(names[i], e->model) != 0)
+        ++i;
+    if (i == n)
+        return sr_pbrt_unsupported(b, e, names, n);
+    struct sampler s = {0};
+    sr_status status = sr_pbrt_bind(b, sampler_params, e, plain, &s);
+    if (status != SR_OK)
+        return status;
+    bool is_independent = strcmp(e->model, "independent") == 0;
+    uint32_t spp = s.spp ? (uint32_t)s.spp : is_independent ? 4 : 16;
+    if (strcmp(e->model, "stratified") == 0)
+        spp = (uint32_t)s.x_samples * (uint32_t)s.y_samples;
+    spp = b->options->spp ? b->options->spp : spp;
+    if (b->options->quick)
+        spp = spp > 4 ? spp / 4 : 1;
+    b->result->spp = spp;
+    b->result->seed = (uint32_t)s.seed;
+    b->result->sampler = is_independent ? SR_SAMPLER_INDEPENDENT : SR_SAMPLER_SOBOL;
+    sr_pbrt_warn_unused(b, e, sampler_params, NULL);
+    return SR_OK;
+}
+
+/* ---- integrator ---- */
+
+/* pbrt's estimators that are not here: without media they and path tracing estimate the same integral */
+static bool is_done_by_path(const char *name)
+{
+    static const char *const names[] = {"volpath", "bdpt", "mlt", "sppm", "lightpath", "simplevolpath"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; ++i)
+        if (strcmp(name, names[i]) == 0)
+            return true;
+    return false;
+}
+
+static sr_status build_integrator(struct sr_pbrt_build *b, enum sr_light_choice *choice)
+{
+    struct sr_pbrt_entity e = b->d->integrator;
+    const char *wanted = b->options->integrator ? b->options->integrator : e.model, *light_sampler = "bvh";
+    bool is_other = strcmp(wanted, e.model) != 0;
+    if (is_done_by_path(wanted)) {
+        if (e.where.file && !is_other)
+            sr_pbrt_warn(b->d, e.where, "Integrator \"%s\" is not supported yet: \"path\" renders this scene instead, with the same expectation", wanted);
+        is_other = is_other || strcmp(wanted, "path") != 0;
+        wanted = "path";
+    }
+    e.model = wanted;
+    const struct sr_integrator_model *m = sr_integrator_model_find(wanted);
+    if (!m) {
+        const char *names[16];
+        size_t n = 0;
+        for (; sr_integrator_models[n] && n < 16; ++n)
+            names[n] = sr_integrator_models[n]->name;
+        return sr_pbrt_unsupported(b, &e, names, n);
+    }
+    void *self = sr_arena_alloc(b->arena, m->size);
+    if (!self)
+        return sr_pbrt_no_memory(b);
+    sr_status status = sr_pbrt_bind(b, m->params, &e, plain, self);
+    if (status == SR_OK)
+        status = sr_pbrt_get_string(b->d, &e.params, "lightsampler", &light_sampler, b->error);
+    *choice = strcmp(light_sampler, "power") == 0 ? SR_LIGHTS_POWER : strcmp(light_sampler, "uniform") == 0 ? SR_LIGHTS_UNIFORM : SR_LIGHTS_BVH;
+    if (status == SR_OK && !is_other)
+        sr_pbrt_warn_unused(b, &e, m->params, NULL);
+    b->result->integrator = (struct sr_integrator){m, self};
+    return status;
+}
+
+/* ---- options ---- */
+
+static sr_status build_options(struct sr_pbrt_build *b)
+{
+    static const char *const harmless[] = {"rendercoordsys", "wavefront", "pixelstats", "msereferenceimage", "msereferenceout", "displacementedgescale"};
+    b->result->jitter_pixel = b->result->jitter_lambda = true;
+    for (size_t i = 0; i < b->d->options.count; ++i) {
+        const struct sr_pbrt_option *o = SR_PBRT_AT(b->d->options, struct sr_pbrt_option, i);
+        bool is_on = o->value.type == SR_PBRT_BOOL && o->value.count == 1 && o->value.ints[0];
+        bool is_bool = strcmp(o->name, "disablepixeljitter") == 0 || strcmp(o->name, "disablewavelengthjitter") == 0;
+        if (is_bool && (o->value.type != SR_PBRT_BOOL || o->value.count != 1))
+            return sr_pbrt_fail(b->d, o->value.where, b->error, SR_ERROR_INPUT, "Option \"%s\": expected one bool", o->value.name);
+        if (strcmp(o->name, "disablepixeljitter") == 0)
+            b->result->jitter_pixel = !is_on;
+        else if (strcmp(o->name, "disablewavelengthjitter") == 0)
+            b->result->jitter_lambda = !is_on;
+        else if (strcmp(o->name, "seed") == 0) {
+            if (o->value.type != SR_PBRT_INTEGER || o->value.count != 1)
+                return sr_pbrt_fail(b->d, o->value.where, b->error, SR_ERROR_INPUT, "Option \"seed\": expected one integer");
+            if (!sr_pbrt_find(&b->d->sampler.params, "seed")) // the sampler's own word counts more
+                b->result->seed = (uint32_t)o->value.ints[0];
+        } else {
+            bool is_harmless = false;
+            for (size_t k = 0; k < sizeof harmless / sizeof *harmless; ++k)
+                is_harmless = is_harmless || strcmp(o->name, harmless[k]) == 0;
+            if (!is_harmless && (is_on || o->value.type != SR_PBRT_BOOL))
+                sr_pbrt_warn(b->d, o->value.where, "Option \"%s\" is not supported yet and does nothing", o->value.name);
+        }
+    }
+    return SR_OK;
+}
+
+sr_status sr_pbrt_refuse_medium(struct sr_pbrt_build *b, const char *medium, struct sr_location where)
+{
+    if (!medium || !medium[0])
+        return SR_OK;
+    return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT, "MediumInterface \"%s\": participating media are not supported yet", medium);
+}
+
+sr_status sr_pbrt_build_settings(struct sr_pbrt_build *b, enum sr_light_choice *choice)
+{
+    sr_status status = build_film(b);
+    if (status == SR_OK)
+        status = build_filter(b);
+    if (status == SR_OK)
+        status = build_sensor(b);
+    if (status == SR_OK)
+        status = build_sampler(b);
+    if (status == SR_OK)
+        status = build_options(b);
+    return status == SR_OK ? build_integrator(b, choice) : status;
+}
