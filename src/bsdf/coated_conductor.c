@@ -37,7 +37,7 @@ static uint32_t lobes(const void *self)
     struct layers l = layers_of(self, true);
     if (is_delta(&l))
         return SR_LOBE_REFLECTION | SR_LOBE_SPECULAR;
-    return SR_LOBE_REFLECTION | (l.has_medium ? SR_LOBE_DIFFUSE : SR_LOBE_GLOSSY) |
+    return SR_LOBE_REFLECTION | (l.has_medium ? SR_LOBE_DIFFUSE : 0) | (l.top.is_smooth && l.base_is_smooth ? 0 : SR_LOBE_GLOSSY) |
            (l.top.is_smooth && (l.top.eta != 1 || l.base_is_smooth) ? SR_LOBE_SPECULAR : 0);
 }
 

@@ -179,7 +179,7 @@ static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_trans
     struct layers l = layers_of(c, false);
     if (!is_closed(&l)) {
         *p = density(&l, wo, wi);
-        return l.has_medium ? layered_f(&l, false, wo, wi) : rough_f(&l, wo, wi);
+        return l.has_medium || c->weighs_as_pbrt ? layered_f(&l, false, wo, wi) : rough_f(&l, wo, wi);
     }
     struct shares share = shares_of(c, wo.z);
     *p = (1 - share.probability) * (wi.z * SR_INV_PI);
@@ -207,6 +207,7 @@ static float pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mod
 
 static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode, struct sr_bsdf_sample *s)
 {
+    (void)mode;
     const struct sr_bsdf_coated *c = self;
     struct layers l = layers_of(c, false);
     bool below = wo.z < 0, drawn;

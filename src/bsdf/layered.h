@@ -91,6 +91,18 @@ static inline bool draw_top(const struct layers *l, sr_vec3 wo, uint32_t lobes, 
     return interface_sample(&l->top, wo, 0.5f, uniform2(rng), lobes, s);
 }
 
+/* The coat from w below to wi above: f in the form for radiance over eta^2, and the density with which w would have been
+ * drawn from wi, which is what the other way of joining does. pbrt-v4 takes the density of the opposite way there, so
+ * that its two weights do not sum to 1 and its f is too bright; on request we do the same. */
+static inline float leave_f_pdf(const struct layers *l, sr_vec3 w, sr_vec3 wi, float *pdf)
+{
+    sr_vec3 back = sr_neg(w);
+    float f = interface_f_pdf(&l->top, wi, back, SR_LOBE_TRANSMISSION, pdf);
+    if (l->c->weighs_as_pbrt && f > 0)
+        interface_f_pdf(&l->top, back, wi, SR_LOBE_TRANSMISSION, pdf);
+    return f;
+}
+
 static inline sr_spectrum base_f_pdf(const struct layers *l, bool metal, sr_vec3 wo, sr_vec3 wi, float *pdf)
 {
     if (!metal) {
@@ -209,9 +221,9 @@ static inline sr_spectrum layered_f(const struct layers *l, bool metal, sr_vec3 
                         break;
                     if (w.z > 0 && rough_top) {
                         float leave_pdf;
-                        float f = interface_f_pdf(&l->top, sr_neg(w), wi, SR_LOBE_TRANSMISSION, &leave_pdf);
+                        float f = leave_f_pdf(l, w, wi, &leave_pdf);
                         if (f > 0)
-                            sum += beta * (crossing(top_z - z, w) * f * sr_sqr(l->top.eta) * power_heuristic(pdf, leave_pdf));
+                            sum += beta * (crossing(top_z - z, w) * f * power_heuristic(pdf, leave_pdf));
                     }
                     continue;
                 }
@@ -242,9 +254,9 @@ static inline sr_spectrum layered_f(const struct layers *l, bool metal, sr_vec3 
             beta *= weight;
             if (rough_top) { // toward wi by the direction that the base prefers
                 float leave_pdf;
-                float f = interface_f_pdf(&l->top, sr_neg(w), wi, SR_LOBE_TRANSMISSION, &leave_pdf);
+                float f = leave_f_pdf(l, w, wi, &leave_pdf);
                 if (f > 0)
-                    sum += beta * (crossing(top_z, w) * f * sr_sqr(l->top.eta) *
+                    sum += beta * (crossing(top_z, w) * f *
                                    (l->base_is_smooth ? 1 : power_heuristic(pdf, leave_pdf)));
             }
         }

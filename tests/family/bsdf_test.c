@@ -1,0 +1,389 @@
+/* SPDX-License-Identifier: MIT */
+/* What every BSDF promises, tested on all models with random parameters from their tables.
+ *
+ * Where f is itself an estimate (is_random), it is compared in the mean, over many seeds; where a sample's density is
+ * only proportional, the share of light that the sampler sends somewhere is compared with what f says. */
+#include "bsdf/bsdf.h"
+#include "test.h"
+
+#define PI 3.14159265358979324
+#define LAST (SR_LAMBDA_COUNT - 1)
+
+static float uniform(struct sr_rng *rng)
+{
+    return sr_rng_float(rng);
+}
+static sr_vec2 square(struct sr_rng *rng)
+{
+    float x = uniform(rng);
+    return (sr_vec2){x, uniform(rng)};
+}
+static sr_vec3 sphere(struct sr_rng *rng)
+{
+    float z = 1 - 2 * uniform(rng), phi = 2 * SR_PI * uniform(rng);
+    return sr_spherical_direction(sqrtf(1 - z * z), z, phi);
+}
+/* directions that a quadrature can look from: not closer to grazing than 75 deg */
+static sr_vec3 viewer(struct sr_rng *rng)
+{
+    sr_vec3 w;
+    do
+        w = sphere(rng);
+    while (fabsf(w.z) < 0.25f);
+    return w;
+}
+
+static uint32_t seed_of(void *data, uint32_t seed, bool random)
+{
+    if (random)
+        ((struct sr_bsdf_coated *)data)->seed = seed;
+    return seed;
+}
+static bool has_seed(const struct sr_bsdf_model *m)
+{
+    return m == &sr_bsdf_coated_diffuse || m == &sr_bsdf_coated_conductor;
+}
+
+/* Draws parameters. Slopes: sharp with that probability (a mirror or narrower than quadratures resolve), else from
+ * 0.2 to 1, and indices not near 1, where refraction is as sharp as a mirror. Walks as long as the table allows, so that f and sample are truncated alike. */
+static struct sr_bsdf draw(const struct sr_bsdf_model *model, struct sr_rng *rng, float sharp)
+{
+    struct sr_bsdf b = {.model = model};
+    sr_spectrum spent = SR_BLACK; // what other reflectances have taken
+    float kind = uniform(rng), slope[2] = {0, 0};
+    for (int i = 0; i < 2; ++i)
+        slope[i] = powf(10, -0.7f * uniform(rng));
+    for (const struct sr_param *p = model->params; p->name; ++p) {
+        void *at = b.data + p->offset;
+        float lo = (float)p->min, hi = (float)p->max;
+        if (p->kind == SR_PARAM_FLOAT) {
+            float v = lo + (hi - lo) * uniform(rng);
+            if (strstr(p->name, "alpha")) {
+                v = slope[strstr(p->name, "_y") != NULL];
+                if (strstr(p->name, "base_"))
+                    v = sqrtf(v);
+                if (kind < sharp)
+                    v = kind < sharp / 2 ? 0 : v * 0.02f;
+                else if (strstr(p->name, "coat_") && kind > 0.5f + sharp / 2)
+                    v = 0; // half of the coats are smooth
+            } else if (strcmp(p->name, "thickness") == 0)
+                v = powf(10, -2.5f + 3 * uniform(rng));
+            if (strcmp(p->name, "eta") == 0 && kind >= sharp && v > 0.67f && v < 1.5f)
+                v = v < 1 ? 0.67f : 1.5f;
+            memcpy(at, &v, sizeof v);
+        } else if (p->kind == SR_PARAM_INT) {
+            int32_t v = strcmp(p->name, "sample_count") == 0 ? 1 : (int32_t)p->max;
+            memcpy(at, &v, sizeof v);
+        } else if (p->kind == SR_PARAM_ALBEDO || p->kind == SR_PARAM_UNBOUNDED) {
+            sr_spectrum v = SR_BLACK;
+            bool medium = strcmp(p->name, "albedo") == 0, black = medium && uniform(rng) < 0.5f;
+            for (int i = 0; i < SR_LAMBDA_COUNT; ++i)
+                v[i] = black ? 0 : lo + (hi - lo) * uniform(rng);
+            if (p->kind == SR_PARAM_ALBEDO && !medium) {
+                v *= 1 - spent;
+                spent += v;
+            }
+            memcpy(at, &v, sizeof v);
+        } else
+            test_fail(__FILE__, __LINE__, "%s.%s: no rule to draw this kind", model->name, p->name);
+    }
+    return b;
+}
+
+/* is f of these parameters a random estimate? Asked of f itself */
+static bool is_random(struct sr_bsdf b)
+{
+    if (!b.model->is_random)
+        return false;
+    sr_vec3 wo = {0.48f, 0, 0.8772685f}, wi = {0, 0.6f, 0.8f};
+    float first = 0;
+    for (uint32_t i = 0; i < 16; ++i) {
+        seed_of(b.data, i, true);
+        float f = sr_bsdf_f(&b, wo, wi, SR_RADIANCE)[0];
+        if (i == 0)
+            first = f;
+        else if (f != first)
+            return true;
+    }
+    return false;
+}
+
+static double luminous(sr_spectrum f) // one number for a spectrum: two wavelengths, so that mixing them up is seen
+{
+    return (double)f[0] + 2 * (double)f[LAST];
+}
+
+#define FOR_EACH_MODEL(m)                                                                                              \
+    for (int m##_i = 0; sr_bsdf_models[m##_i]; ++m##_i)                                                                 \
+        for (const struct sr_bsdf_model *m = sr_bsdf_models[m##_i], *once = m; once; once = NULL)
+
+TEST(bsdf_tables_describe_their_structs)
+{
+    FOR_EACH_MODEL(m) {
+        EXPECT(m->size > 0 && m->size <= SR_BSDF_SIZE);
+        EXPECT(sr_bsdf_model_find(m->name) == m);
+        for (const struct sr_param *p = m->params; p->name; ++p) {
+            size_t size = p->kind == SR_PARAM_FLOAT || p->kind == SR_PARAM_INT ? 4 : sizeof(sr_spectrum);
+            EXPECT(p->offset + size <= m->size);
+            EXPECT(p->min < p->max && p->initial >= p->min && p->initial <= p->max);
+        }
+    }
+    EXPECT(!sr_bsdf_model_find("nothing"));
+}
+
+/* f(wo, wi) of radiance is f(wi, wo) of importance: light does not care which way we follow it (Veach 1997). */
+TEST(bsdf_radiance_and_importance_are_adjoint)
+{
+    FOR_EACH_MODEL(m) {
+        struct sr_rng rng = sr_rng_seed(11, 1);
+        for (int set = 0; set < 64 && !m->not_reciprocal; ++set) {
+            struct sr_bsdf b = draw(m, &rng, 0.2f);
+            if (!is_random(b)) {
+                for (int i = 0; i < 200; ++i) {
+                    sr_vec3 wo = sphere(&rng), wi = sphere(&rng);
+                    sr_spectrum f = sr_bsdf_f(&b, wo, wi, SR_RADIANCE), g = sr_bsdf_f(&b, wi, wo, SR_IMPORTANCE);
+                    for (int k = 0; k < SR_LAMBDA_COUNT; ++k)
+                        if (fabsf(f[k] - g[k]) > 5e-3f * fmaxf(f[k], g[k]) + 1e-5f)
+                            test_fail(__FILE__, __LINE__, "%s: f(wo, wi) = %g but f*(wi, wo) = %g", m->name, (double)f[k], (double)g[k]);
+                }
+            } else if (set < 24) {
+                sr_vec3 wo = viewer(&rng), wi = viewer(&rng);
+                wo.z = copysignf(wo.z, wi.z);
+                struct sr_tally t = {0};
+                for (uint32_t i = 0; i < 8000; ++i) {
+                    seed_of(b.data, i, true);
+                    sr_tally_add(&t, luminous(sr_bsdf_f(&b, wo, wi, SR_RADIANCE) - sr_bsdf_f(&b, wi, wo, SR_IMPORTANCE)));
+                }
+                if (!(fabs(t.mean) <= 4.9 * sr_tally_standard_error(&t)))
+                    test_fail(__FILE__, __LINE__, "%s, set %d: f(wo, wi) - f*(wi, wo) = %g +- %g", m->name, set, t.mean,
+                              sr_tally_standard_error(&t));
+            }
+        }
+    }
+}
+
+/* No surface returns more light than arrives: E = mean of f |cos| / pdf <= 1 at each wavelength. */
+TEST(bsdf_does_not_make_light)
+{
+    FOR_EACH_MODEL(m) {
+        struct sr_rng rng = sr_rng_seed(12, 1);
+        for (int set = 0; set < 64; ++set) {
+            struct sr_bsdf b = draw(m, &rng, 0.3f);
+            sr_vec3 wo = sphere(&rng);
+            struct sr_tally E[SR_LAMBDA_COUNT] = {0};
+            sr_spectrum known = SR_BLACK + NAN;
+            if (m->albedo)
+                known = m->albedo(b.data, wo);
+            for (uint32_t i = 0; i < 2000; ++i) {
+                struct sr_bsdf_sample s;
+                seed_of(b.data, i, has_seed(m));
+                float u = uniform(&rng);
+                sr_spectrum weight = SR_BLACK;
+                if (sr_bsdf_sample(&b, wo, u, square(&rng), SR_IMPORTANCE, &s))
+                    weight = s.f * fabsf(s.wi.z) / s.pdf;
+                for (int k = 0; k < SR_LAMBDA_COUNT; ++k)
+                    sr_tally_add(&E[k], (double)weight[k]);
+            }
+            for (int k = 0; k < SR_LAMBDA_COUNT; ++k) {
+                if (!(E[k].mean <= 1 + 1e-5 + 4.9 * sr_tally_standard_error(&E[k])))
+                    test_fail(__FILE__, __LINE__, "%s, set %d: E = %g +- %g", m->name, set, E[k].mean, sr_tally_standard_error(&E[k]));
+                if (isfinite(known[k]))
+                    EXPECT_NEAR(E[k].mean, known[k], 1e-5 + 4.9 * sr_tally_standard_error(&E[k]));
+            }
+        }
+    }
+}
+
+#define CELLS_Z 20
+#define CELLS_PHI 24
+#define FINE 24 // points of a cell and axis: many, because total reflection begins with a kink
+
+/* the density [1/sr] in each cell of the sphere, even in cos theta and phi, by midpoints */
+static double cell_probabilities(const struct sr_bsdf *b, sr_vec3 wo, double *cells)
+{
+    double total = 0, area = 4 * PI / (CELLS_Z * CELLS_PHI);
+    for (int i = 0; i < CELLS_Z; ++i)
+        for (int j = 0; j < CELLS_PHI; ++j) {
+            double sum = 0;
+            for (int k = 0; k < FINE * FINE; ++k) {
+                double z = 2 * (i + (k / FINE + 0.5) / FINE) / CELLS_Z - 1, phi = 2 * PI * (j + (k % FINE + 0.5) / FINE) / CELLS_PHI;
+                sr_vec3 wi = {(float)(sqrt(1 - z * z) * cos(phi)), (float)(sqrt(1 - z * z) * sin(phi)), (float)z};
+                sum += (double)sr_bsdf_pdf(b, wo, wi, SR_RADIANCE);
+            }
+            total += cells[i * CELLS_PHI + j] = sum * area / (FINE * FINE);
+        }
+    return total;
+}
+static int cell_of(sr_vec3 w)
+{
+    double phi = atan2((double)w.y, (double)w.x);
+    int i = (int)((1 + (double)w.z) / 2 * CELLS_Z), j = (int)((phi < 0 ? phi + 2 * PI : phi) / (2 * PI) * CELLS_PHI);
+    return (i < CELLS_Z ? i : CELLS_Z - 1) * CELLS_PHI + (j < CELLS_PHI ? j : CELLS_PHI - 1);
+}
+
+/* Samples fall as the density says (Pearson's chi-square); the rest are mirrored or absorbed. */
+TEST(bsdf_sampler_follows_its_pdf)
+{
+    FOR_EACH_MODEL(m) {
+        struct sr_rng rng = sr_rng_seed(13, 1);
+        int tested = 0;
+        for (int set = 0; set < 32 && tested < 16; ++set) {
+            struct sr_bsdf b = draw(m, &rng, 0);
+            sr_vec3 wo = viewer(&rng);
+            const int n = 100000;
+            static double expected[CELLS_Z * CELLS_PHI + 1], observed[CELLS_Z * CELLS_PHI + 1];
+            if (is_random(b))
+                continue; // its pdf serves for weighing only
+            double total = cell_probabilities(&b, wo, expected);
+            if (!(total <= 1 + 2e-3))
+                test_fail(__FILE__, __LINE__, "%s, set %d: the pdf integrates to %g", m->name, set, total);
+            ++tested;
+            memset(observed, 0, sizeof observed);
+            for (int i = 0; i < n; ++i) {
+                struct sr_bsdf_sample s;
+                float u = uniform(&rng);
+                bool drawn = sr_bsdf_sample(&b, wo, u, square(&rng), SR_RADIANCE, &s);
+                EXPECT(!drawn || !s.pdf_is_proportional);
+                observed[drawn && !(s.lobe & SR_LOBE_SPECULAR) ? cell_of(s.wi) : CELLS_Z * CELLS_PHI] += 1;
+            }
+            for (int i = 0; i < CELLS_Z * CELLS_PHI; ++i)
+                expected[i] *= n;
+            double elsewhere = n * (1 - total);
+            expected[CELLS_Z * CELLS_PHI] = elsewhere > 1e-2 * sqrt(n) ? elsewhere : 1e-9 * n;
+            if (elsewhere <= 1e-2 * sqrt(n) && observed[CELLS_Z * CELLS_PHI] == 0)
+                expected[CELLS_Z * CELLS_PHI] = 0;
+            double chi2, p;
+            int degrees;
+            p = sr_chi2_test(observed, expected, CELLS_Z * CELLS_PHI + 1, 5, &chi2, &degrees);
+            if (!(p > 1e-6))
+                test_fail(__FILE__, __LINE__, "%s, set %d: chi2 = %g of %d degrees, p = %g; %g of %g elsewhere", m->name, set, chi2,
+                          degrees, p, observed[CELLS_Z * CELLS_PHI], elsewhere);
+        }
+    }
+}
+
+/* Drawn light is the light that f describes: mean of f |cos| g / pdf over samples = INTEGRAL f |cos| g dwi, for three
+ * functions g of wi (1, wi.x, wi.z), the integral by directions that do not know the BSDF. Delta lobes left out. */
+TEST(bsdf_sampler_sends_light_where_f_says)
+{
+    FOR_EACH_MODEL(m) {
+        struct sr_rng rng = sr_rng_seed(14, 1);
+        for (int set = 0; set < 24; ++set) {
+            struct sr_bsdf b = draw(m, &rng, 0);
+            sr_vec3 wo = viewer(&rng);
+            const uint32_t n = 20000;
+            struct sr_tally drawn[3] = {0}, described[3] = {0};
+            for (uint32_t i = 0; i < n; ++i) {
+                seed_of(b.data, i, has_seed(m));
+                struct sr_bsdf_sample s;
+                float u = uniform(&rng);
+                double w = 0, g[3] = {1, 0, 0};
+                if (sr_bsdf_sample(&b, wo, u, square(&rng), SR_IMPORTANCE, &s) && !(s.lobe & SR_LOBE_SPECULAR)) {
+                    w = luminous(s.f) * (double)(fabsf(s.wi.z) / s.pdf);
+                    g[1] = (double)s.wi.x;
+                    g[2] = (double)s.wi.z;
+                }
+                // uniform in cos^2 on either side, with density |cos| / (2 pi)
+                sr_vec3 wi = sr_warp_cosine_hemisphere(square(&rng));
+                if (i & 1)
+                    wi = sr_neg(wi);
+                double v = 2 * PI * luminous(sr_bsdf_f(&b, wo, wi, SR_IMPORTANCE)), h[3] = {1, (double)wi.x, (double)wi.z};
+                for (int k = 0; k < 3; ++k) {
+                    sr_tally_add(&drawn[k], w * g[k]);
+                    sr_tally_add(&described[k], v * h[k]);
+                }
+            }
+            for (int k = 0; k < 3; ++k) {
+                double error = hypot(sr_tally_standard_error(&drawn[k]), sr_tally_standard_error(&described[k]));
+                if (!(fabs(drawn[k].mean - described[k].mean) <= 4.9 * error + 1e-5))
+                    test_fail(__FILE__, __LINE__, "%s, set %d, moment %d: drawn %g, described %g, z = %.1f", m->name, set, k,
+                              drawn[k].mean, described[k].mean, (drawn[k].mean - described[k].mean) / error);
+            }
+        }
+    }
+}
+
+/* f_pdf gives the bits of f and of pdf; both are pure functions; a sample tells the f and pdf of its direction. */
+TEST(bsdf_functions_agree_with_each_other)
+{
+    FOR_EACH_MODEL(m) {
+        struct sr_rng rng = sr_rng_seed(15, 1);
+        for (int set = 0; set < 64; ++set) {
+            struct sr_bsdf b = draw(m, &rng, 0.3f);
+            bool sharp = false;
+            for (const struct sr_param *p = m->params; p->name; ++p)
+                sharp |= strstr(p->name, "alpha") && *(const float *)(const void *)(b.data + p->offset) < 0.05f;
+            for (int i = 0; i < 100; ++i) {
+                enum sr_transport mode = i & 1 ? SR_RADIANCE : SR_IMPORTANCE;
+                sr_vec3 wo = sphere(&rng), wi = sphere(&rng);
+                float pdf;
+                sr_spectrum both = sr_bsdf_f_pdf(&b, wo, wi, mode, &pdf), f = sr_bsdf_f(&b, wo, wi, mode);
+                EXPECT(memcmp(&both, &f, sizeof f) == 0);
+                EXPECT(pdf == sr_bsdf_pdf(&b, wo, wi, mode));
+                EXPECT(pdf > 0 || sr_spectrum_is_black(f)); // what f shows can be weighed
+
+                struct sr_bsdf_sample s;
+                float u = uniform(&rng);
+                if (!sr_bsdf_sample(&b, wo, u, square(&rng), mode, &s))
+                    continue;
+                EXPECT_NEAR(sr_length2(s.wi), 1, 1e-5);
+                EXPECT((s.lobe & ~sr_bsdf_lobes(&b)) == 0);
+                EXPECT(!!(s.lobe & SR_LOBE_TRANSMISSION) == !sr_same_hemisphere(wo, s.wi));
+                EXPECT(s.pdf > 0 && s.pdf < INFINITY && sr_spectrum_is_finite(s.f));
+                if ((s.lobe & SR_LOBE_SPECULAR) || s.pdf_is_proportional || sharp || fabsf(s.wi.z) < 1e-2f || fabsf(wo.z) < 1e-2f)
+                    continue;
+                f = sr_bsdf_f_pdf(&b, wo, s.wi, mode, &pdf);
+                EXPECT_RELATIVE(pdf, s.pdf, 5e-3);
+                for (int k = 0; k < SR_LAMBDA_COUNT; ++k)
+                    EXPECT_NEAR(f[k], s.f[k], 5e-3f * s.f[k] + 1e-7f);
+            }
+        }
+    }
+}
+
+/* Grazing, opposite, identical and vertical directions, mirrors, and hair-thin lobes: numbers stay numbers. */
+TEST(bsdf_stays_finite_where_directions_degenerate)
+{
+    const float tiny[] = {0, 1e-20f, 1e-8f, 1e-4f, 0.3f, 1};
+    FOR_EACH_MODEL(m) {
+        struct sr_rng rng = sr_rng_seed(16, 1);
+        for (int set = 0; set < 64; ++set) {
+            struct sr_bsdf b = draw(m, &rng, 0.5f);
+            for (const struct sr_param *p = m->params; p->name; ++p) // spans of the table, too
+                if (p->kind == SR_PARAM_FLOAT && set % 8 < 2) {
+                    float v = (float)(set % 8 == 0 ? p->min : p->max);
+                    memcpy(b.data + p->offset, &v, sizeof v);
+                }
+            sr_vec3 w[14];
+            for (int i = 0; i < 6; ++i) {
+                w[2 * i] = (sr_vec3){sqrtf(1 - tiny[i] * tiny[i]), 0, tiny[i]};
+                w[2 * i + 1] = (sr_vec3){0.6f * w[2 * i].x, -0.8f * w[2 * i].x, -tiny[i]};
+            }
+            w[12] = (sr_vec3){0, 0, 1};
+            w[13] = (sr_vec3){-0.6f, 0, -0.8f};
+            for (int i = 0; i < 14; ++i)
+                for (int j = 0; j < 28; ++j) {
+                    sr_vec3 wi = j < 14 ? w[j] : j == 14 ? sr_neg(w[i]) : (sr_vec3){-w[j - 14].x, w[j - 14].y, w[j - 14].z};
+                    float pdf;
+                    sr_spectrum f = sr_bsdf_f_pdf(&b, w[i], wi, SR_RADIANCE, &pdf);
+                    struct sr_bsdf_sample s;
+                    float u = j == 0 ? 0 : j == 1 ? SR_ONE_MINUS_EPSILON : uniform(&rng);
+                    sr_vec2 v = j < 2 ? (sr_vec2){u, u} : j == 2 ? (sr_vec2){0, SR_ONE_MINUS_EPSILON} : j == 3 ? (sr_vec2){SR_ONE_MINUS_EPSILON, 0} : square(&rng);
+                    bool ok = pdf >= 0 && pdf < INFINITY;
+                    for (int k = 0; k < SR_LAMBDA_COUNT; ++k)
+                        ok &= f[k] >= 0 && f[k] < INFINITY;
+                    if (!ok)
+                        test_fail(__FILE__, __LINE__, "%s, set %d: wo %g %g %g wi %g %g %g: f %g pdf %g", m->name, set, (double)w[i].x,
+                                  (double)w[i].y, (double)w[i].z, (double)wi.x, (double)wi.y, (double)wi.z, (double)f[0], (double)pdf);
+                    if (sr_bsdf_sample(&b, w[i], u, v, SR_RADIANCE, &s)) {
+                        ok = s.pdf > 0 && s.pdf < INFINITY && sr_is_finite(s.wi);
+                        for (int k = 0; k < SR_LAMBDA_COUNT; ++k)
+                            ok &= s.f[k] >= 0 && s.f[k] < INFINITY;
+                        if (!ok)
+                            test_fail(__FILE__, __LINE__, "%s, set %d: sample at wo.z %g: f %g pdf %g", m->name, set, (double)w[i].z,
+                                      (double)s.f[0], (double)s.pdf);
+                    }
+                }
+        }
+    }
+}
