@@ -90,22 +90,14 @@ static struct sr_bsdf draw(const struct sr_bsdf_model *model, struct sr_rng *rng
     return b;
 }
 
-/* is f of these parameters a random estimate? Asked of f itself */
+/* is f of these parameters a random estimate? Not where all is smooth but a matte base, and nothing scatters between */
 static bool is_random(struct sr_bsdf b)
 {
+    const struct sr_bsdf_coated *c = (const void *)b.data;
     if (!b.model->is_random)
         return false;
-    sr_vec3 wo = {0.48f, 0, 0.8772685f}, wi = {0, 0.6f, 0.8f};
-    float first = 0;
-    for (uint32_t i = 0; i < 16; ++i) {
-        seed_of(b.data, i, true);
-        float f = sr_bsdf_f(&b, wo, wi, SR_RADIANCE)[0];
-        if (i == 0)
-            first = f;
-        else if (f != first)
-            return true;
-    }
-    return false;
+    bool smooth = sr_ggx_is_smooth(c->coat_ggx) && (b.model == &sr_bsdf_coated_diffuse || sr_ggx_is_smooth(c->base_ggx));
+    return !smooth || !sr_spectrum_is_black(c->albedo);
 }
 
 static double luminous(sr_spectrum f) // one number for a spectrum: two wavelengths, so that mixing them up is seen

@@ -110,8 +110,8 @@ TEST(rough_glass_reflects_and_transmits_what_quadrature_in_double_says)
         struct query q = {.bsdf.model = &sr_bsdf_dielectric, .wo = direction(rows[i].theta, 30)};
         q.wo.z *= (float)rows[i].side;
         *(struct sr_bsdf_dielectric *)q.bsdf.data = (struct sr_bsdf_dielectric){1.5f, {rows[i].alpha, rows[i].alpha}};
-        EXPECT_NEAR(hemisphere(f_cos, &q, rows[i].side, 200), rows[i].R, 2e-5);
-        EXPECT_NEAR(hemisphere(f_cos, &q, -rows[i].side, 400), rows[i].T, 5e-4); // a kink where total reflection begins
+        EXPECT_NEAR(hemisphere(f_cos, &q, rows[i].side, 200), rows[i].R, 1e-4);
+        EXPECT_NEAR(hemisphere(f_cos, &q, -rows[i].side, 400), rows[i].T, 1e-3); // a kink where total reflection begins
 
         // the same by the sampler, on a lattice of 3 dimensions (Roberts 2018)
         double share[2] = {0, 0};
