@@ -8,6 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include <steradian/base.h>
+
 #if defined(__GNUC__)
 #define SR_PRINTF(text, first) __attribute__((format(printf, text, first)))
 #else
@@ -17,15 +19,6 @@
 #define SR_UNLIKELY(x) __builtin_expect(!!(x), 0)
 
 /* ---- statuses: an operating error is a status and one sentence ---- */
-
-typedef enum sr_status {
-    SR_OK = 0,
-    SR_ERROR_CHECK = 1,    // a check failed or a target was missed
-    SR_ERROR_USAGE = 2,    // the caller's arguments make no sense
-    SR_ERROR_INPUT = 3,    // a file or scene is wrong
-    SR_ERROR_RESOURCE = 4, // memory, disk, permissions
-    SR_CANCELLED = 5,
-} sr_status;
 
 /* The first mistake sticks: later calls of sr_fail leave it as it is. Always valid when zeroed. */
 struct sr_error {

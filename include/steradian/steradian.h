@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: MIT */
+/* Steradian: light, computed and measured. All public headers at once. */
+#ifndef STERADIAN_STERADIAN_H
+#define STERADIAN_STERADIAN_H
+
+#include "base.h"
+#include "picture.h"
+#include "world.h"
+
+#endif

@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: MIT */
+/* A world: a scene, the sensor that looks at it, and how it is to be rendered, as a pbrt-v4 file describes them.
+ *
+ * Load it once; from then on it never changes, and any number of threads may render it or measure in it at a time. */
+#ifndef STERADIAN_WORLD_H
+#define STERADIAN_WORLD_H
+
+#include "base.h"
+#include "picture.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+struct sr_world;
+
+/* Reads a scene file; "-" is standard input. warn may be NULL; it is told one sentence at a time. On failure *world is NULL
+ * and error (if not NULL, of size error_size) holds one sentence: file:line:column: what, and what was expected. */
+SR_API sr_status sr_world_load(const char *path, void (*warn)(void *user, const char *text), void *user, struct sr_world **world,
+                               char *error, size_t error_size);
+SR_API void sr_world_destroy(struct sr_world *world); /* NULL is fine */
+
+/* How to render. Zeroed members leave the scene's own settings: struct sr_render_settings s = {0}; is always valid. */
+struct sr_render_settings {
+    uint32_t spp;        /* samples per pixel, in all */
+    uint32_t replicates; /* R >= 2 independently scrambled nets, for Student's intervals; 0: one net, conservative errors */
+    bool has_seed;
+    uint32_t seed;
+    int threads;         /* 0: all processors */
+    float lambda_min_nm; /* [nm] 0: 360 */
+    float lambda_max_nm; /* [nm] 0: 830 */
+    bool with_auxiliary; /* also albedo, normals, position, depth, texture coordinates, numbers */
+
+    /* Called now and then from a working thread with the share of the work that is done; return false to stop. */
+    bool (*progress)(void *user, double share); /* [1] */
+    void *user;
+};
+
+/* Renders a new picture: R G B in cd/m^2, SE.R SE.G SE.B, samples. SR_CANCELLED: the picture holds what there is. */
+SR_API sr_status sr_world_render(const struct sr_world *world, const struct sr_render_settings *settings, struct sr_picture **picture,
+                                 char *error, size_t error_size);
+
+/* A measured value with its uncertainty (GUM, type A). */
+struct sr_reading {
+    double value;                /* [unit] */
+    double standard_uncertainty; /* [unit] */
+    double degrees_of_freedom;   /* [1] */
+    const char *unit;
+};
+/* Half the width of the interval that covers the truth with that probability (Student): expanded uncertainty. [unit] */
+SR_API double sr_reading_expanded(const struct sr_reading *reading, double level /* [1] such as 0.95 */);
+
+/* Illuminance and irradiance on a surface element at point_m with that normal (any length but zero), by at least 2
+ * replicates of samples each. Either reading may be NULL. */
+SR_API sr_status sr_world_irradiance(const struct sr_world *world, const double point_m[3], const double normal[3], uint32_t samples,
+                                     uint32_t replicates, struct sr_reading *E_v /* [lx] */, struct sr_reading *E_e /* [W/m^2] */);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

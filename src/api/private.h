@@ -1,0 +1,17 @@
+/* SPDX-License-Identifier: MIT */
+/* What the public functions share. */
+#ifndef SR_API_PRIVATE_H
+#define SR_API_PRIVATE_H
+
+#include "render/render.h"
+
+struct sr_picture {
+    struct sr_image *image; // of floats
+};
+
+/* The error's sentence into the caller's buffer; gives its status. */
+sr_status api_tell(const struct sr_error *error, char *text, size_t size);
+/* Takes the image. */
+sr_status api_wrap_image(struct sr_image *image, struct sr_picture **picture, struct sr_error *error);
+
+#endif

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: MIT */
+/* The public world: it checks the arguments and calls import and render. */
+#include <steradian/world.h>
+
+#include "api/private.h"
+#include "import/import.h"
+
+struct sr_world {
+    struct sr_import_result import;
+};
+
+struct listener {
+    void (*warn)(void *user, const char *text);
+    void *user;
+};
+
+static void pass_on(void *user, enum sr_severity severity, const char *text)
+{
+    const struct listener *l = user;
+    if (l->warn && severity == SR_WARNING)
+        l->warn(l->user, text);
+}
+
+sr_status sr_world_load(const char *path, void (*warn)(void *user, const char *text), void *user, struct sr_world **world, char *error, size_t error_size)
+{
+    struct sr_error e = {0};
+    struct listener listener = {warn, user};
+    struct sr_log log = {.write = pass_on, .user = &listener};
+    struct sr_import_options options = {0};
+    struct sr_world *w = sr_alloc(sizeof *w);
+    *world = NULL;
+    if (!w)
+        sr_fail(&e, SR_ERROR_RESOURCE, "%s: not enough memory", path);
+    else if (sr_import_pbrt(path, &options, &w->import, &log, &e) == SR_OK) {
+        *world = w;
+        return SR_OK;
+    }
+    sr_free(w);
+    return api_tell(&e, error, error_size);
+}
+
+void sr_world_destroy(struct sr_world *world)
+{
+    if (!world)
+        return;
+    sr_import_result_free(&world->import);
+    sr_free(world);
+}
+
+static struct sr_render_job job_of(const struct sr_world *world)
+{
+    const struct sr_import_result *i = &world->import;
+    return (struct sr_render_job){
+        .scene = i->scene, .sensor = i->sensor, .filter = i->filter, .integrator = i->integrator, .film = i->film, .sampler = i->sampler,
+        .seed = i->seed, .spp = i->spp, .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX}, .jitter_pixel = i->jitter_pixel, .jitter_lambda = i->jitter_lambda,
+    };
+}
+
+struct caller {
+    const struct sr_render_settings *settings;
+    atomic_bool stop;
+};
+
+static void ask_caller(void *user, const struct sr_render_progress *p)
+{
+    struct caller *c = user;
+    if (!c->settings->progress(c->settings->user, p->share))
+        atomic_store(&c->stop, true);
+}
+
+sr_status sr_world_render(const struct sr_world *world, const struct sr_render_settings *settings, struct sr_picture **picture, char *error, size_t error_size)
+{
+    struct sr_error e = {0};
+    struct sr_render_settings none = {0};
+    struct caller caller = {.settings = settings ? settings : &none};
+    const struct sr_render_settings *s = caller.settings;
+    struct sr_render_job job = job_of(world);
+    *picture = NULL;
+    job.spp = s->spp ? s->spp : job.spp;
+    job.replicates = s->replicates;
+    job.seed = s->has_seed ? s->seed : job.seed;
+    job.threads = s->threads;
+    job.lambda.lo = s->lambda_min_nm > 0 ? s->lambda_min_nm : job.lambda.lo;
+    job.lambda.hi = s->lambda_max_nm > 0 ? s->lambda_max_nm : job.lambda.hi;
+    job.with_aov = s->with_auxiliary;
+    if (!(job.lambda.lo >= 100 && job.lambda.lo < job.lambda.hi && job.lambda.hi <= 20000)) {
+        sr_fail(&e, SR_ERROR_USAGE, "wavelengths from %g to %g nm: 100 <= min < max <= 20000 was expected", (double)job.lambda.lo, (double)job.lambda.hi);
+        return api_tell(&e, error, error_size);
+    }
+    if (s->progress) {
+        job.progress = ask_caller;
+        job.progress_interval_s = 0.1;
+        job.user = &caller;
+        job.cancel = &caller.stop;
+    }
+    struct sr_film *film;
+    struct sr_render_report report;
+    struct sr_image *image;
+    sr_status status = sr_render(&job, &film, &report, &e);
+    if (!film)
+        return api_tell(&e, error, error_size);
+    sr_status made = sr_render_image(film, true, job.replicates > 0, &image, &e);
+    sr_film_destroy(film);
+    if (made != SR_OK || api_wrap_image(image, picture, &e) != SR_OK)
+        return api_tell(&e, error, error_size);
+    return status;
+}
+
+double sr_reading_expanded(const struct sr_reading *reading, double level)
+{
+    return sr_student_quantile(0.5 + level / 2, reading->degrees_of_freedom) * reading->standard_uncertainty;
+}
+
+sr_status sr_world_irradiance(const struct sr_world *world, const double point_m[3], const double normal[3], uint32_t samples, uint32_t replicates,
+                              struct sr_reading *E_v, struct sr_reading *E_e)
+{
+    sr_vec3 p = {(float)point_m[0], (float)point_m[1], (float)point_m[2]}, n = {(float)normal[0], (float)normal[1], (float)normal[2]};
+    if (samples < 1 || replicates < 2 || !sr_is_finite(p) || !sr_is_finite(n) || !(sr_length(n) > 0))
+        return SR_ERROR_USAGE;
+    struct sr_render_job job = job_of(world);
+    struct sr_irradiance E = sr_render_irradiance(&job, p, n, samples, replicates);
+    if (E_v)
+        *E_v = (struct sr_reading){E.E_v, E.E_v_error, E.degrees, "lx"};
+    if (E_e)
+        *E_e = (struct sr_reading){E.E_e, E.E_e_error, E.degrees, "W/m^2"};
+    return SR_OK;
+}
