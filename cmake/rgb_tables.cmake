@@ -2,7 +2,7 @@
 # Fits the RGB-to-spectrum tables while building (a few seconds, two threads) and embeds them by the assembler.
 add_executable(steradian_fit_rgb src/spectrum/fit/fit_rgb.c src/spectrum/data_observer.c src/spectrum/data_illuminants.c
   src/spectrum/data_colour_spaces.c)
-target_include_directories(steradian_fit_rgb PRIVATE src)
+target_include_directories(steradian_fit_rgb PRIVATE ${CMAKE_SOURCE_DIR}/include src)
 target_compile_options(steradian_fit_rgb PRIVATE -O3 -Wall -Wextra -fno-math-errno -fno-trapping-math)
 if(STERADIAN_HAS_NO_PSABI)
   target_compile_options(steradian_fit_rgb PRIVATE -Wno-psabi)
