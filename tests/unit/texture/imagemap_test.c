@@ -1,0 +1,244 @@
+/* SPDX-License-Identifier: MIT */
+#include "make.h"
+
+enum { BILINEAR, POINT, TRILINEAR, EWA };
+enum { REPEAT, CLAMP, BLACK, OCTAHEDRAL };
+
+static struct made image(bool is_float, uint32_t width, uint32_t height, uint32_t channels, const float *floats)
+{
+    struct made m = make("imagemap", is_float);
+    *(struct sr_texels *)(void *)((char *)m.self + sr_texture_texels_offset(m.model)) =
+        (struct sr_texels){.width = width, .height = height, .channels = channels, .floats = floats, .space = SR_SRGB};
+    return m;
+}
+
+static float at(struct sr_texture t, float s, float tt, float footprint)
+{
+    struct sr_point x = {.uv = {s, tt}, .dudx = footprint, .dvdy = footprint};
+    return sr_texture_float(t, &x);
+}
+
+static const float ramp[8] = {1, 2, 3, 4, 10, 20, 30, 40}; // 4 x 2: the second row is the lower
+
+TEST(texel_centres_give_texels_and_the_first_row_is_the_upper)
+{
+    struct made m = image(true, 4, 2, 1, ramp);
+    struct sr_texture t = made_texture(&m, SR_PARAM_ALBEDO);
+    for (int i = 0; i < 4; ++i) {
+        EXPECT_NEAR(at(t, ((float)i + 0.5f) / 4, 0.75f, 0), ramp[i], 1e-6);
+        EXPECT_NEAR(at(t, ((float)i + 0.5f) / 4, 0.25f, 0), ramp[4 + i], 1e-5);
+    }
+    EXPECT_NEAR(at(t, 0.25f, 0.5f, 0), (1 + 2 + 10 + 20) / 4.0, 1e-5);
+    EXPECT_NEAR(at(t, 0.375f + 0.0625f, 0.75f, 0), 2 * 0.75 + 3 * 0.25, 1e-5);
+    sr_arena_free(&m.arena);
+}
+
+TEST(wraps_say_what_is_beyond_the_border)
+{
+    struct made m = image(true, 4, 2, 1, ramp);
+    struct sr_texture t = made_texture(&m, SR_PARAM_ALBEDO);
+    int32_t *wrap = made_member(&m, "wrap");
+    *wrap = REPEAT;
+    EXPECT_NEAR(at(t, 0, 0.75f, 0), (4 + 1) / 2.0, 1e-6);
+    EXPECT_NEAR(at(t, 5.125f, -7.25f, 0), 1, 1e-5);
+    *wrap = CLAMP;
+    EXPECT_NEAR(at(t, 0, 0.75f, 0), 1, 1e-6);
+    EXPECT_NEAR(at(t, 9, -9, 0), 40, 1e-5);
+    *wrap = BLACK;
+    EXPECT_NEAR(at(t, 0, 0.75f, 0), 0.5, 1e-6);
+    EXPECT_NEAR(at(t, 9, -9, 0), 0, 0);
+    *wrap = OCTAHEDRAL; // the left neighbour of texel (0, 0) is (0, 1), the upper one (3, 0)
+    EXPECT_NEAR(at(t, 0, 0.75f, 0), (1 + 10) / 2.0, 1e-6);
+    EXPECT_NEAR(at(t, 0.125f, 1, 0), (1 + 4) / 2.0, 1e-6);
+    for (int w = REPEAT; w <= OCTAHEDRAL; ++w) { // nothing strange may crash
+        *wrap = w;
+        EXPECT(isfinite(at(t, NAN, 1e30f, 0)) && isfinite(at(t, -1e30f, INFINITY, NAN)));
+    }
+    sr_arena_free(&m.arena);
+}
+
+TEST(point_filter_takes_the_nearest_texel)
+{
+    struct made m = image(true, 4, 2, 1, ramp);
+    *(int32_t *)made_member(&m, "filter") = POINT;
+    struct sr_texture t = made_texture(&m, SR_PARAM_ALBEDO);
+    EXPECT_NEAR(at(t, 0.49f, 0.51f, 0), 2, 0);
+    EXPECT_NEAR(at(t, 0.51f, 0.49f, 0), 30, 0);
+    EXPECT_NEAR(at(t, 1.01f, 0.51f, 0), 1, 0);
+    sr_arena_free(&m.arena);
+}
+
+TEST(scale_comes_before_invert_and_nothing_is_negative)
+{
+    static const float values[2] = {0.25f, 0.75f};
+    struct made m = image(true, 2, 1, 1, values);
+    *(float *)made_member(&m, "scale") = 2;
+    *(bool *)made_member(&m, "invert") = true;
+    struct sr_texture t = made_texture(&m, SR_PARAM_ALBEDO);
+    EXPECT_NEAR(at(t, 0.25f, 0.5f, 0), 0.5, 1e-7);
+    EXPECT_NEAR(at(t, 0.75f, 0.5f, 0), 0, 0); // max(0, 1 - 1.5)
+    sr_arena_free(&m.arena);
+}
+
+TEST(a_float_texture_takes_the_mean_of_rgb_or_alpha)
+{
+    static const float rgb[3] = {0.1f, 0.2f, 0.6f}, rgba[4] = {0.1f, 0.2f, 0.6f, 0.7f};
+    struct made m = image(true, 1, 1, 3, rgb), n = image(true, 1, 1, 4, rgba);
+    EXPECT_NEAR(at(made_texture(&m, SR_PARAM_ALBEDO), 0.5f, 0.5f, 0), 0.3, 1e-6);
+    EXPECT_NEAR(at(made_texture(&n, SR_PARAM_ALBEDO), 0.5f, 0.5f, 0), 0.7, 1e-6);
+    sr_arena_free(&m.arena);
+    sr_arena_free(&n.arena);
+}
+
+/* Every level has the mean of the image, powers of two or not; the last is the mean. */
+TEST(each_level_keeps_the_mean)
+{
+    enum { W = 13, H = 6 };
+    static float values[W * H];
+    double mean = 0;
+    for (int i = 0; i < W * H; ++i) {
+        values[i] = (float)((i * 7919) % 101) / 100;
+        mean += (double)values[i] / (W * H);
+    }
+    struct made m = image(true, W, H, 1, values);
+    *(int32_t *)made_member(&m, "filter") = POINT;
+    struct sr_texture t = made_texture(&m, SR_PARAM_ALBEDO);
+    for (int level = 0; level <= 4; ++level) { // 13 x 6, 7 x 3, 4 x 2, 2 x 1, 1 x 1
+        float footprint = 0.5f * exp2f((float)level - 4 + 0.5f);
+        uint32_t w = W, h = H;
+        for (int k = 0; k < level; ++k)
+            w = (w + 1) / 2, h = (h + 1) / 2;
+        double sum = 0;
+        for (uint32_t y = 0; y < h; ++y)
+            for (uint32_t x = 0; x < w; ++x)
+                sum += (double)at(t, ((float)x + 0.5f) / (float)w, ((float)y + 0.5f) / (float)h, footprint);
+        EXPECT_NEAR(sum / (w * h), mean, 1e-6);
+    }
+    EXPECT_NEAR(at(t, 0.3f, 0.3f, 100), mean, 1e-6);
+    sr_arena_free(&m.arena);
+}
+
+TEST(trilinear_goes_from_level_to_level_without_a_step)
+{
+    static float values[64];
+    for (int i = 0; i < 64; ++i)
+        values[i] = (float)((i * 37) % 11);
+    struct made m = image(true, 8, 8, 1, values), e = image(true, 8, 8, 1, values);
+    *(int32_t *)made_member(&m, "filter") = TRILINEAR;
+    *(int32_t *)made_member(&e, "filter") = EWA;
+    struct sr_texture t = made_texture(&m, SR_PARAM_ALBEDO), ewa = made_texture(&e, SR_PARAM_ALBEDO);
+    // level = 3 + log2(2 footprint): 1 and 2 at 1/8 and 1/4; halfway the mean of both
+    float one = at(t, 0.3f, 0.6f, 0.125f), two = at(t, 0.3f, 0.6f, 0.25f);
+    EXPECT_NEAR(at(t, 0.3f, 0.6f, 0.125f * sqrtf(2)), (one + two) / 2, 1e-5);
+    for (float f = 0.01f; f < 1; f *= 1.5f) // a round footprint: ewa is trilinear
+        EXPECT_NEAR(at(ewa, 0.3f, 0.6f, f), at(t, 0.3f, 0.6f, f), 1e-5);
+    // a long one averages along itself: columns of alternating texels become their mean, across stays sharp
+    for (int i = 0; i < 64; ++i)
+        values[i] = (float)(i / 8 % 2 * 2); // rows 0, 2, 0, 2, …
+    struct made r = image(true, 8, 8, 1, values);
+    *(int32_t *)made_member(&r, "filter") = EWA;
+    struct sr_texture rows = made_texture(&r, SR_PARAM_ALBEDO);
+    struct sr_point along = {.uv = {0.3f, 1 - 0.1875f}, .dudx = 0.4f, .dvdy = 0.06f};
+    EXPECT_NEAR(sr_texture_float(rows, &along), 2, 1e-5);
+    struct sr_point across = {.uv = {0.3f, 1 - 0.1875f}, .dudx = 0.06f, .dvdy = 0.4f};
+    EXPECT_NEAR(sr_texture_float(rows, &across), 1, 0.35);
+    sr_arena_free(&m.arena);
+    sr_arena_free(&e.arena);
+    sr_arena_free(&r.arena);
+}
+
+TEST(bytes_are_decoded_and_alpha_is_not)
+{
+    static float decode[256];
+    for (int i = 0; i < 256; ++i)
+        decode[i] = (float)i * (float)i; // anything but linear
+    static const uint8_t grey[1] = {5}, rgba[4] = {1, 2, 3, 51};
+    struct made m = image(true, 1, 1, 1, NULL), n = image(true, 1, 1, 4, NULL);
+    struct sr_texels *t = (void *)((char *)m.self + sr_texture_texels_offset(m.model));
+    t->bytes = grey;
+    t->decode = decode;
+    EXPECT_NEAR(at(made_texture(&m, SR_PARAM_ALBEDO), 0, 0, 0), 25, 0);
+    t = (void *)((char *)n.self + sr_texture_texels_offset(n.model));
+    t->bytes = rgba;
+    t->decode = decode;
+    EXPECT_NEAR(at(made_texture(&n, SR_PARAM_ALBEDO), 0, 0, 0), 0.2, 1e-7);
+    sr_arena_free(&m.arena);
+    sr_arena_free(&n.arena);
+}
+
+static double colour_error(struct sr_texture t, struct sr_point x, const double expected[3], bool is_emission)
+{
+    // the colour of the reflectance under the space's illuminant (or of the emission): integrals of 1 nm steps
+    const struct sr_colour_space *space = sr_colour_space(SR_SRGB);
+    struct sr_spd white = {.kind = SR_SPD_TABLE, .scale = 1, .table = space->illuminant};
+    struct sr_spd emitted_white = sr_spd_from_rgb_illuminant(SR_SRGB, (struct sr_rgb){1, 1, 1});
+    double xyz[3] = {0}, norm = 0;
+    for (int lambda = 360; lambda <= 830; lambda += SR_LAMBDA_COUNT) {
+        struct sr_wavelengths w;
+        for (int i = 0; i < SR_LAMBDA_COUNT; ++i)
+            w.lambda[i] = (float)(lambda + i);
+        sr_spectrum s = sr_texture_spectrum(t, &x, &w);
+        sr_spectrum light = sr_spd_eval(is_emission ? &emitted_white : &white, w.lambda);
+        for (int i = 0; i < SR_LAMBDA_COUNT && lambda + i <= 830; ++i) {
+            double bar[3];
+            sr_observer_1931(lambda + i, bar);
+            for (int k = 0; k < 3; ++k)
+                xyz[k] += (is_emission ? (double)s[i] : (double)(s[i] * light[i])) * bar[k];
+            norm += (double)light[i] * bar[1];
+        }
+    }
+    double worst = 0;
+    for (int k = 0; k < 3; ++k) {
+        double value = 0;
+        for (int j = 0; j < 3; ++j)
+            value += space->rgb_from_xyz[k][j] * xyz[j] / norm;
+        worst = fmax(worst, fabs(value - expected[k]));
+    }
+    return worst;
+}
+
+/* Interpolation is linear in the spectrum, so the colour of what is between texels is the interpolated RGB. */
+TEST(the_colour_between_texels_is_the_interpolated_rgb)
+{
+    static const float rgb[4 * 3] = {0.8f, 0.1f, 0.1f, 0.1f, 0.7f, 0.2f, 0.05f, 0.1f, 0.6f, 0.9f, 0.9f, 0.9f};
+    const float places[3][2] = {{0.25f, 0.75f}, {0.5f, 0.5f}, {0.35f, 0.6f}};
+    for (int use = 0; use < 3; ++use) {
+        const enum sr_param_kind kinds[3] = {SR_PARAM_ALBEDO, SR_PARAM_UNBOUNDED, SR_PARAM_ILLUMINANT};
+        float scale = use == 0 ? 1 : 7.3f;
+        struct made m = image(false, 2, 2, 3, rgb);
+        *(float *)made_member(&m, "scale") = scale;
+        struct sr_texture t = made_texture(&m, kinds[use]);
+        for (int p = 0; p < 3; ++p) {
+            struct sr_point x = {.uv = {places[p][0], places[p][1]}};
+            double s = 2 * (double)places[p][0] - 0.5, v = 2 * (1 - (double)places[p][1]) - 0.5, expected[3];
+            for (int k = 0; k < 3; ++k)
+                expected[k] = (double)scale * ((1 - v) * ((1 - s) * (double)rgb[k] + s * (double)rgb[3 + k]) +
+                                               v * ((1 - s) * (double)rgb[6 + k] + s * (double)rgb[9 + k]));
+            EXPECT_NEAR(colour_error(t, x, expected, use == 2), 0, 2e-3 * (double)scale);
+        }
+        sr_arena_free(&m.arena);
+    }
+}
+
+TEST(a_texel_is_the_curve_of_its_rgb)
+{
+    struct sr_wavelengths w = wavelengths();
+    for (int i = 0; i < 27; ++i) {
+        float rgb[3] = {(float)(i % 3) / 2, (float)(i / 3 % 3) / 2, (float)(i / 9) / 2};
+        struct made m = image(false, 1, 1, 3, rgb);
+        struct sr_texture t = made_texture(&m, SR_PARAM_ALBEDO);
+        struct sr_spd expected = sr_spd_from_rgb_albedo(SR_SRGB, (struct sr_rgb){rgb[0], rgb[1], rgb[2]});
+        sr_spectrum a = sr_texture_spectrum(t, &(struct sr_point){0}, &w), b = sr_spd_eval(&expected, w.lambda);
+        for (int k = 0; k < SR_LAMBDA_COUNT; ++k)
+            EXPECT_NEAR(a[k], b[k], 5e-4);
+        sr_arena_free(&m.arena);
+    }
+}
+
+TEST(an_image_without_texels_is_refused)
+{
+    struct made m = image(false, 0, 0, 3, NULL);
+    struct sr_texture_use use = {SR_PARAM_ALBEDO, SR_SRGB};
+    EXPECT_EQUAL_INT(m.model->prepare(m.self, use, &m.arena, &m.error), SR_ERROR_INPUT);
+    sr_arena_free(&m.arena);
+}
