@@ -35,7 +35,8 @@ static const struct sr_material *choose(const void *self, struct sr_material_con
     if (amount >= 1)
         return materials[1];
     bool second = c->u < amount;
-    c->u = fminf(second ? c->u / amount : (c->u - amount) / (1 - amount), SR_ONE_MINUS_EPSILON);
+    float u = second ? c->u / amount : (c->u - amount) / (1 - amount);
+    c->u = u < SR_ONE_MINUS_EPSILON ? u : SR_ONE_MINUS_EPSILON;
     return materials[second];
 }
 

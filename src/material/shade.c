@@ -90,6 +90,17 @@ static void bump(struct sr_texture displacement, struct sr_point *x)
     x->dpdus = dpdu;
 }
 
+// z = ns, x along the tangent: as sr_frame_from_zx, without its care for the last digits, which costs as much as a BSDF
+static inline struct sr_frame frame_at(const struct sr_point *x)
+{
+    sr_vec3 z = x->ns, across = on_tangent_plane(x->dpdus, z);
+    float length2 = sr_length2(across);
+    if (SR_UNLIKELY(!(length2 > 1e-10f * sr_length2(x->dpdus)) || !(length2 < INFINITY)))
+        return sr_frame_from_z(z);
+    sr_vec3 t = sr_scale(1 / sqrtf(length2), across);
+    return (struct sr_frame){.x = t, .y = {z.y * t.z - z.z * t.y, z.z * t.x - z.x * t.z, z.x * t.y - z.y * t.x}, .z = z};
+}
+
 void sr_material_shade(const struct sr_material *material, struct sr_point *x, sr_vec3 wo, float u, uint32_t seed,
                        struct sr_wavelengths *w, struct sr_bsdf *out, struct sr_frame *frame)
 {
@@ -106,5 +117,5 @@ void sr_material_shade(const struct sr_material *material, struct sr_point *x, s
             bump(material->displacement, x);
         material->model->bsdf(material->self, &c, out);
     }
-    *frame = sr_frame_from_zx(x->ns, x->dpdus);
+    *frame = frame_at(x);
 }
