@@ -82,7 +82,7 @@ static sr_vec3 error_bound(const sr_vec3 v[3], float b0, float b1, float b2)
                      g * (fabsf(b0 * v[0].z) + fabsf(b1 * v[1].z) + fabsf(b2 * v[2].z))};
 }
 
-/* Fills dxdu and dxdv from differences along two edges; false if the texture coordinates span no area. */
+/* From differences along two edges to derivatives by the texture coordinates. */
 struct slope {
     float u02, v02, u12, v12, inverse; // differences of uv to vertex 2, one over their determinant
 };
@@ -97,6 +97,10 @@ static void point(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_p
     const struct sr_shape_mesh *m = self;
     const int32_t *c = corners(m, primitive);
     const sr_vec3 *P = m->P.data;
+    for (int i = 0; m->N.count && i < 3; ++i) // all misses at once
+        __builtin_prefetch((const sr_vec3 *)m->N.data + c[i]);
+    for (int i = 0; m->uv.count && i < 3; ++i)
+        __builtin_prefetch((const sr_vec2 *)m->uv.data + c[i]);
     const sr_vec3 v[3] = {P[c[0]], P[c[1]], P[c[2]]};
     float b1 = hit.x, b2 = hit.y, b0 = 1 - b1 - b2;
 
@@ -138,7 +142,7 @@ static void point(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_p
             float inverse = 1 / sqrtf(l2);
             sr_vec3 ns = sr_scale(inverse, s);
             x->ns = ns;
-            x->n = sr_face_forward(n, ns);
+            x->n = sr_scale(copysignf(1, sr_dot(n, ns)), n); // no branch to mispredict
             if (has_slope) {
                 sr_vec3 dsdu, dsdv;
                 solve(&k, sr_sub(N[c[0]], N[c[2]]), sr_sub(N[c[1]], N[c[2]]), &dsdu, &dsdv);
@@ -180,18 +184,22 @@ static sr_vec3 outside(const struct sr_shape_mesh *m, const int32_t *c, sr_vec3 
     return m->flip_normals ? sr_neg(n) : n;
 }
 
-/* Whether the triangle is drawn by solid angle as seen from p, and if so its solid angle. The same in sample and pdf. */
-static bool by_solid_angle(const sr_vec3 v[3], sr_vec3 p, double *solid_angle)
+/* Whether the triangle is drawn by solid angle as seen from p, and if so its solid angle [sr] (Van Oosterom & Strackee
+ * 1983). The same in sample and pdf. */
+static bool by_solid_angle(const sr_vec3 v[3], sr_vec3 p, float *solid_angle)
 {
     sr_vec3 a = sr_sub(v[0], p), b = sr_sub(v[1], p), c = sr_sub(v[2], p);
-    sr_vec3 e0 = sr_sub(v[1], v[0]), e1 = sr_sub(v[2], v[1]), e2 = sr_sub(v[0], v[2]);
+    sr_vec3 e0 = sr_sub(v[1], v[0]), e1 = sr_sub(v[2], v[1]), e2 = sr_sub(v[2], v[0]);
     float a2 = sr_dot(a, a), b2 = sr_dot(b, b), c2 = sr_dot(c, c);
     float nearest2 = fminf(a2, fminf(b2, c2));
     float extent2 = fmaxf(sr_dot(e0, e0), fmaxf(sr_dot(e1, e1), sr_dot(e2, e2)));
     if (extent2 < small_extent2 * nearest2 || !(nearest2 > 1e-30f))
         return false;
-    *solid_angle = sr_spherical_triangle_area(sr_scale(1 / sqrtf(a2), a), sr_scale(1 / sqrtf(b2), b), sr_scale(1 / sqrtf(c2), c));
-    return *solid_angle > (double)min_solid_angle && *solid_angle < (double)max_solid_angle;
+    // of directions, so that no scale overflows
+    sr_vec3 A = sr_scale(1 / sqrtf(a2), a), B = sr_scale(1 / sqrtf(b2), b), C = sr_scale(1 / sqrtf(c2), c);
+    float volume = fabsf(sr_dot(A, sr_cross(e0, e2))) / sqrtf(b2 * c2);
+    *solid_angle = 2 * atan2f(volume, 1 + sr_dot(A, B) + sr_dot(B, C) + sr_dot(C, A));
+    return *solid_angle > min_solid_angle && *solid_angle < max_solid_angle;
 }
 
 /* The receiver's cosine where the square's corners (0,0) (1,0) (0,1) (1,1) go: vertices 1, 1, 0, 2. */
@@ -213,14 +221,9 @@ static bool sample(const void *self, uint32_t primitive, const struct sr_point *
     const int32_t *c = corners(m, primitive);
     sr_vec3 v[3];
     vertices(m, primitive, v);
-    float a = area(self, primitive);
-    if (!(a > 0))
-        return false;
-
-    float b[3];
-    double solid_angle;
+    float b[3], pdf;
+    float solid_angle;
     bool is_spherical = reference && by_solid_angle(v, reference->p, &solid_angle);
-    float pdf = 1 / a;
     if (is_spherical) {
         float pdf_warp = 1;
         if (sr_has_normal(reference)) {
@@ -232,6 +235,10 @@ static bool sample(const void *self, uint32_t primitive, const struct sr_point *
         sr_spherical_triangle_sample(v, reference->p, u, b, &pdf);
         pdf *= pdf_warp;
     } else {
+        float a = area(self, primitive);
+        if (!(a > 0))
+            return false;
+        pdf = 1 / a;
         sr_vec2 t = sr_warp_triangle(u);
         b[0] = t.x;
         b[1] = t.y;
@@ -250,7 +257,7 @@ static float pdf(const void *self, uint32_t primitive, const struct sr_point *re
 {
     sr_vec3 v[3];
     vertices(self, primitive, v);
-    double solid_angle;
+    float solid_angle;
     if (!by_solid_angle(v, reference->p, &solid_angle)) {
         float a = area(self, primitive);
         return a > 0 ? sr_density_seen_from(reference->p, there->p, there->n, 1 / a) : 0;
@@ -261,7 +268,7 @@ static float pdf(const void *self, uint32_t primitive, const struct sr_point *re
         corner_weights(reference, v, w);
         pdf_warp = sr_warp_bilinear_pdf(sr_spherical_triangle_invert(v, reference->p, wi), w);
     }
-    return pdf_warp / (float)solid_angle;
+    return pdf_warp / solid_angle;
 }
 
 /* The flat normal; where shading normals of the corners disagree about its side, all directions. */

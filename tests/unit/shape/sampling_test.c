@@ -47,7 +47,7 @@ TEST(sphere_by_area_sends_the_same_irradiance)
     struct sr_point x = receiver(origin, (sr_vec3){sinf(40 * SR_PI / 180), 0, cosf(40 * SR_PI / 180)});
     struct sr_shape s = make_sphere(1, placed(then(move(0, 0, 3), sr_transform_scale((sr_vec3){1, 1, 1.0001f}))));
     EXPECT(!((const struct sr_shape_sphere *)s.self)->is_rigid);
-    struct sr_tally E = irradiance(s, 0, &x, 1000000, 7);
+    struct sr_tally E = irradiance(s, 0, &x, 1500000, 7);
     EXPECT(sr_tally_standard_error(&E) < 2e-3 * E.mean);
     EXPECT(fabs(E.mean / 0.267399954981 - 1) < 4.9 * sr_tally_standard_error(&E) / E.mean + 1e-4);
 }
@@ -59,7 +59,7 @@ TEST(sphere_from_within_fills_a_hemisphere)
     struct sr_point x = receiver((sr_vec3){0.7f, -0.3f, 0.4f}, up);
     struct sr_tally E = {0};
     struct sr_rng rng = sr_rng_seed(8, 1);
-    for (int i = 0; i < 300000; ++i) {
+    for (int i = 0; i < 2000000; ++i) {
         struct sr_shape_sample y;
         sr_vec2 u = {uniform(&rng), uniform(&rng)};
         EXPECT(s.model->sample(s.self, 0, &x, u, &y));
@@ -187,6 +187,7 @@ static struct sr_shape zoo(int k, struct sr_transform t)
 }
 enum { zoo_count = 9 };
 
+/* Inverting a direction to the numbers that drew it loses digits where the shape is seen almost edge on; that must be rare. */
 TEST(pdf_is_what_sample_said)
 {
     for (int k = 0; k < zoo_count; ++k) {
@@ -196,13 +197,17 @@ TEST(pdf_is_what_sample_said)
                 t = then(t, sr_transform_scale((sr_vec3){1, 0.5f, -1.7f}));
             struct sr_shape s = zoo(k, t);
             struct sr_rng rng = sr_rng_seed(30, (uint64_t)k);
-            for (int i = 0; i < 60; ++i) {
+            int off[3] = {0};
+            for (int i = 0; i < 3000; ++i) {
                 sr_vec3 p = sr_scale(0.3f + 6 * sr_sqr(uniform(&rng)), random_direction(&rng));
                 struct sr_point x = receiver(p, i % 3 ? random_direction(&rng) : nowhere);
-                double worst = pdf_deviation(s, 0, &x, 100, (uint64_t)i);
-                if (!(worst < 1e-3))
-                    test_fail(__FILE__, __LINE__, "shape %d, scaled %d, place %d: pdf deviates by %g", k, scaled, i, worst);
+                double deviation = pdf_deviation(s, 0, &x, 2, (uint64_t)i);
+                off[0] += deviation > 1e-4;
+                off[1] += deviation > 1e-3;
+                off[2] += deviation > 1e-2;
             }
+            if (off[0] > 6 || off[1] > 1 || off[2] > 0)
+                test_fail(__FILE__, __LINE__, "shape %d, scaled %d: of 3000 places, %d %d %d deviate by 1e-4, 1e-3, 1e-2", k, scaled, off[0], off[1], off[2]);
         }
     }
 }
@@ -238,7 +243,7 @@ TEST(pdf_integrates_to_1_over_the_directions_that_meet)
         }
         if (!(fabs(mean.mean - 1) < 4.9 * sr_tally_standard_error(&mean)))
             test_fail(__FILE__, __LINE__, "shape %d: integral %g +- %g", k, mean.mean, sr_tally_standard_error(&mean));
-        EXPECT(sr_tally_standard_error(&mean) < 0.02);
+        EXPECT(sr_tally_standard_error(&mean) < 0.03);
     }
 }
 
@@ -321,6 +326,27 @@ TEST(triangle_without_area_is_never_sampled)
     EXPECT(!s.model->sample(s.self, 0, NULL, (sr_vec2){0.3f, 0.4f}, &y));
 }
 
+/* Van Oosterom & Strackee in double, with the volume from the edges */
+static double solid_angle_exactly(const sr_vec3 v[3])
+{
+    double a[3][3], l[3], e[3], f[3], volume = 0, dots[3] = {0};
+    for (int i = 0; i < 3; ++i) {
+        a[i][0] = (double)v[i].x;
+        a[i][1] = (double)v[i].y;
+        a[i][2] = (double)v[i].z;
+        l[i] = sqrt(a[i][0] * a[i][0] + a[i][1] * a[i][1] + a[i][2] * a[i][2]);
+    }
+    for (int j = 0; j < 3; ++j) {
+        e[j] = a[1][j] - a[0][j];
+        f[j] = a[2][j] - a[0][j];
+        for (int i = 0; i < 3; ++i)
+            dots[i] += a[i][j] * a[(i + 1) % 3][j];
+    }
+    for (int i = 0; i < 3; ++i)
+        volume += a[0][i] * (e[(i + 1) % 3] * f[(i + 2) % 3] - e[(i + 2) % 3] * f[(i + 1) % 3]);
+    return 2 * atan2(fabs(volume), l[0] * l[1] * l[2] + dots[0] * l[2] + dots[1] * l[0] + dots[2] * l[1]);
+}
+
 /* Many triangles of all sizes, needles among them: 1/pdf averages to the exact solid angle. */
 TEST(triangles_of_all_sizes_keep_their_solid_angle)
 {
@@ -330,7 +356,7 @@ TEST(triangles_of_all_sizes_keep_their_solid_angle)
         sr_vec3 c = random_direction(&rng), e = sr_scale(size, random_direction(&rng)), f = sr_scale(size * thin, random_direction(&rng));
         sr_vec3 v[3] = {c, sr_add(c, e), sr_add(c, f)};
         struct sr_shape s = make_triangle(v[0], v[1], v[2], here());
-        double exact = sr_spherical_triangle_area(sr_normalize(v[0]), sr_normalize(v[1]), sr_normalize(v[2]));
+        double exact = solid_angle_exactly(v);
         struct sr_point x = receiver(origin, i % 2 ? random_direction(&rng) : nowhere);
         struct sr_tally omega = solid_angle(s, 0, &x, 2000, (uint64_t)i);
         if (!(fabs(omega.mean - exact) < 6 * sr_tally_standard_error(&omega) + 1e-3 * exact))

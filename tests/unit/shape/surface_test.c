@@ -4,7 +4,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* A line that lies flat in the object's space: every shape's implicit equation, relative to its size. */
+/* The distance from the implicit surface in object space, in double. */
 static double off_surface(struct sr_shape s, sr_vec3 p)
 {
     const struct sr_shape_quadric *q = s.model == &sr_shape_sphere ? &((const struct sr_shape_sphere *)s.self)->quadric
