@@ -38,7 +38,7 @@ bool sr_refract(sr_vec3 wi, sr_vec3 n, float eta, float *eta_path, sr_vec3 *wt)
         cos_i = -cos_i;
         n = sr_neg(n);
     }
-    float sin2_t = fmaxf(0, (1 - cos_i) * (1 + cos_i)) / (eta * eta);
+    float sin2_t = larger(0, (1 - cos_i) * (1 + cos_i)) / (eta * eta);
     if (sin2_t >= 1)
         return false;
     float cos_t = sqrtf(1 - sin2_t);

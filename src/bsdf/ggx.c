@@ -45,5 +45,5 @@ sr_vec3 sr_ggx_sample_visible(struct sr_ggx g, sr_vec3 w, sr_vec2 u)
 
 float sr_ggx_roughness_to_alpha(float roughness)
 {
-    return sqrtf(fmaxf(roughness, 0));
+    return sqrtf(larger(roughness, 0));
 }

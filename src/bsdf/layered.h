@@ -40,13 +40,25 @@ static inline struct layers layers_of(const struct sr_bsdf_coated *c, bool metal
 /* exp(-x) for x >= 0; relative error < 3e-7. Taylor's series of 2^f about 0, times a power of two. */
 static inline float exp_minus(float x)
 {
-    float t = fmaxf(x * -1.44269504f, -126);
+    float t = larger(x * -1.44269504f, -126);
     float whole = rintf(t), f = (t - whole) * 0.69314718f;
     float p = 1 + f * (1 + f * (1.0f / 2 + f * (1.0f / 6 + f * (1.0f / 24 + f * (1.0f / 120 + f * (1.0f / 720))))));
     int32_t bits = ((int32_t)whole + 127) << 23;
     float power;
     memcpy(&power, &bits, 4);
     return p * power;
+}
+/* -ln x for normal x > 0. ln m = 2 artanh((m - 1) / (m + 1)) of the mantissa; relative error < 3e-7. */
+static inline float minus_log(float x)
+{
+    int32_t bits;
+    memcpy(&bits, &x, 4);
+    int32_t exponent = (bits - 0x3f3504f3) >> 23; // the mantissa in sqrt(1/2) ... sqrt(2)
+    bits -= exponent << 23;
+    float m;
+    memcpy(&m, &bits, 4);
+    float s = (m - 1) / (m + 1), s2 = s * s;
+    return -2 * s * (1 + s2 * (1.0f / 3 + s2 * (1.0f / 5 + s2 * (1.0f / 7 + s2 * (1.0f / 9))))) - (float)exponent * 0.69314718f;
 }
 static inline float crossing(float distance, sr_vec3 w) // transmittance
 {
@@ -137,7 +149,7 @@ static inline bool base_sample(const struct layers *l, bool metal, sr_vec3 wo, s
 /* Henyey & Greenstein 1941: c is the cosine between the ways before and after. [1/sr] */
 static inline float phase(float g, float c)
 {
-    float d = fmaxf(1 + g * g - 2 * g * c, 1e-7f);
+    float d = larger(1 + g * g - 2 * g * c, 1e-7f);
     return (1 - g * g) / (4 * SR_PI * d * sqrtf(d));
 }
 static inline sr_vec3 phase_sample(float g, sr_vec3 w, sr_vec2 u, float *pdf)
@@ -177,7 +189,7 @@ static inline sr_spectrum layered_f(const struct layers *l, bool metal, sr_vec3 
     const struct sr_bsdf_coated *c = l->c;
     const int count = c->sample_count > 0 ? c->sample_count : 1;
     const bool rough_top = !l->top.is_smooth;
-    const float top_z = fmaxf(c->thickness, FLT_MIN);
+    const float top_z = larger(c->thickness, FLT_MIN);
     float unused;
     sr_spectrum sum = SR_BLACK + (float)count * interface_f_pdf(&l->top, wo, wi, SR_LOBE_REFLECTION, &unused);
     struct sr_rng rng = rng_of(c->seed, wo, wi.x, wi.y, wi.z);
@@ -203,7 +215,7 @@ static inline sr_spectrum layered_f(const struct layers *l, bool metal, sr_vec3 
             }
 
             if (l->has_medium) {
-                float step = -logf(1 - sr_rng_float(&rng)) * w.z; // w.z < 0: downward
+                float step = minus_log(1 - sr_rng_float(&rng)) * w.z; // w.z < 0: downward
                 float next = z + step;
                 if (next == z)
                     continue;
@@ -269,7 +281,7 @@ static inline bool layered_sample(const struct layers *l, bool metal, sr_vec3 wo
 {
     const struct sr_bsdf_coated *c = l->c;
     const uint32_t both = SR_LOBE_REFLECTION | SR_LOBE_TRANSMISSION;
-    const float top_z = fmaxf(c->thickness, FLT_MIN);
+    const float top_z = larger(c->thickness, FLT_MIN);
     struct interface_sample i;
     if (!interface_sample(&l->top, wo, u_lobe, u, both, &i))
         return false;
@@ -297,7 +309,7 @@ static inline bool layered_sample(const struct layers *l, bool metal, sr_vec3 wo
             beta *= 1 / most;
         }
         if (l->has_medium) {
-            float next = z - logf(1 - sr_rng_float(&rng)) * w.z;
+            float next = z + minus_log(1 - sr_rng_float(&rng)) * w.z;
             if (next > 0 && next < top_z && next != z) {
                 float pdf;
                 z = next;

@@ -15,6 +15,16 @@
 #define GGX_SMOOTH 1e-3f    // [1] below this slope width a surface is a mirror
 #define GGX_MIN_ALPHA 1e-4f // [1] narrower slopes cannot be told apart by float directions
 
+/* fmaxf and fminf are calls into libm, because of NaN; these are one instruction. NaN in a gives b. */
+static inline float larger(float a, float b)
+{
+    return a > b ? a : b;
+}
+static inline float smaller(float a, float b)
+{
+    return a < b ? a : b;
+}
+
 /* sin and cos of 2 pi u for u in [0, 1]; |error| < 2e-7. */
 static inline void sin_cos_turn(float u, float *s, float *c)
 {
@@ -32,7 +42,7 @@ static inline void sin_cos_turn(float u, float *s, float *c)
 /* Fresnel's reflectance and the cosine of the refracted direction; cos_i in 0 ... 1, eta = transmitted / incident side. */
 static inline float fresnel_and_cos(float cos_i, float eta, float *cos_t)
 {
-    cos_i = fminf(cos_i, 1);
+    cos_i = smaller(cos_i, 1);
     float sin2_t = (1 - cos_i) * (1 + cos_i) / (eta * eta);
     *cos_t = 0;
     if (sin2_t >= 1)
@@ -53,11 +63,11 @@ static inline float fresnel(float cos_i, float eta)
 
 static inline bool ggx_is_smooth(struct sr_ggx g)
 {
-    return fmaxf(g.alpha_x, g.alpha_y) < GGX_SMOOTH;
+    return larger(g.alpha_x, g.alpha_y) < GGX_SMOOTH;
 }
 static inline struct sr_ggx ggx_usable(struct sr_ggx g)
 {
-    return (struct sr_ggx){fmaxf(g.alpha_x, GGX_MIN_ALPHA), fmaxf(g.alpha_y, GGX_MIN_ALPHA)};
+    return (struct sr_ggx){larger(g.alpha_x, GGX_MIN_ALPHA), larger(g.alpha_y, GGX_MIN_ALPHA)};
 }
 static inline float ggx_D(struct sr_ggx g, sr_vec3 m)
 {
@@ -79,7 +89,7 @@ static inline sr_vec3 ggx_sample_visible(struct sr_ggx g, sr_vec3 w, sr_vec2 u)
     sin_cos_turn(u.x, &sine, &cosine);
     float z = (1 - u.y) * (1 + v.z) - v.z;
     float r = sr_safe_sqrt((1 - z) * (1 + z));
-    sr_vec3 m = {g.alpha_x * (r * cosine + v.x), g.alpha_y * (r * sine + v.y), fmaxf(z + v.z, 1e-9f)};
+    sr_vec3 m = {g.alpha_x * (r * cosine + v.x), g.alpha_y * (r * sine + v.y), larger(z + v.z, 1e-9f)};
     return sr_normalize(m);
 }
 
@@ -188,7 +198,7 @@ static inline float interface_f_pdf(const struct interface *a, sr_vec3 wo, sr_ve
 /* A conductor's reflectance per wavelength; c = |cos theta|. The real form of Fresnel's formulas. */
 static inline sr_spectrum conductor_fresnel(float c, sr_spectrum eta, sr_spectrum k)
 {
-    c = fminf(c, 1);
+    c = smaller(c, 1);
     float c2 = c * c, s2 = (1 - c) * (1 + c);
     sr_spectrum nk = eta * k;
     sr_spectrum t0 = eta * eta - k * k - s2;

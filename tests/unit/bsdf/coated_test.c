@@ -118,6 +118,19 @@ TEST(fast_product_of_a_rough_coat_has_the_mean_of_walks)
         }
 }
 
+/* The bias that weighs_as_pbrt is there to reproduce: at alpha 0.3 and n = 1.5 the base looks 8 % too bright. */
+TEST(weights_of_pbrt_do_not_sum_to_one)
+{
+    struct sr_bsdf_coated c = lacquer(0.5f, 0.3f, 1.5f, 0.01f, 10), black = c;
+    sr_vec3 wo = direction(35, 0), wi = direction(40, 110);
+    struct sr_tally ours = mean_f(c, &sr_bsdf_coated_diffuse, wo, wi, 100000);
+    c.weighs_as_pbrt = true;
+    struct sr_tally theirs = mean_f(c, &sr_bsdf_coated_diffuse, wo, wi, 100000);
+    black.base_reflectance = SR_BLACK;
+    double coat = mean_f(black, &sr_bsdf_coated_diffuse, wo, wi, 100).mean;
+    EXPECT_NEAR((theirs.mean - coat) / (ours.mean - coat), 1.08, 0.03);
+}
+
 /* Both smooth, nothing between: a mirror with the series F + T^2 Fc / (1 - F Fc), each crossing of the metal's light. */
 TEST(mirror_under_glass_is_a_series_of_bounces)
 {
