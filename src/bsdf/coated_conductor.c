@@ -12,18 +12,30 @@
 #include "bsdf/layered.h"
 
 static const struct sr_param params[] = {
-    {SR_PARAM_UNBOUNDED, "eta", "1", 0.02, 6, 0.2, offsetof(struct sr_bsdf_coated, base_eta), "index of the metal relative to the coat"},
-    {SR_PARAM_UNBOUNDED, "k", "1", 0, 10, 3.9, offsetof(struct sr_bsdf_coated, base_k), "absorption index relative to the coat"},
-    {SR_PARAM_ALBEDO, "albedo", "1", 0, 1, 0, offsetof(struct sr_bsdf_coated, albedo), "of the medium between; black only absorbs"},
-    {SR_PARAM_FLOAT, "coat_alpha_x", "1", 0, 1, 0, offsetof(struct sr_bsdf_coated, coat_ggx.alpha_x), "slope width of the coat along the tangent"},
-    {SR_PARAM_FLOAT, "coat_alpha_y", "1", 0, 1, 0, offsetof(struct sr_bsdf_coated, coat_ggx.alpha_y), "slope width of the coat across it"},
-    {SR_PARAM_FLOAT, "base_alpha_x", "1", 0, 1, 0, offsetof(struct sr_bsdf_coated, base_ggx.alpha_x), "slope width of the metal along the tangent"},
-    {SR_PARAM_FLOAT, "base_alpha_y", "1", 0, 1, 0, offsetof(struct sr_bsdf_coated, base_ggx.alpha_y), "slope width of the metal across it"},
-    {SR_PARAM_FLOAT, "coat_eta", "1", 0.5, 3, 1.5, offsetof(struct sr_bsdf_coated, coat_eta), "index of refraction of the coat"},
-    {SR_PARAM_FLOAT, "thickness", "1", 0, 10, 0.01, offsetof(struct sr_bsdf_coated, thickness), "of the medium, in mean free paths"},
-    {SR_PARAM_FLOAT, "g", "1", -0.95, 0.95, 0, offsetof(struct sr_bsdf_coated, g), "mean cosine of scattering in the medium"},
-    {SR_PARAM_INT, "max_depth", "1", 1, 100, 10, offsetof(struct sr_bsdf_coated, max_depth), "longest walk, in crossings and scatterings"},
-    {SR_PARAM_INT, "sample_count", "1", 1, 64, 1, offsetof(struct sr_bsdf_coated, sample_count), "walks for one value of f"},
+    {SR_PARAM_UNBOUNDED, "eta", "1", 0.02, 6, 0.2, offsetof(struct sr_bsdf_coated, base_eta),
+     "index of the metal relative to the coat"},
+    {SR_PARAM_UNBOUNDED, "k", "1", 0, 10, 3.9, offsetof(struct sr_bsdf_coated, base_k),
+     "absorption index relative to the coat"},
+    {SR_PARAM_ALBEDO, "albedo", "1", 0, 1, 0, offsetof(struct sr_bsdf_coated, albedo),
+     "of the medium between; black only absorbs"},
+    {SR_PARAM_FLOAT, "coat_alpha_x", "1", 0, 1, 0, offsetof(struct sr_bsdf_coated, coat_ggx.alpha_x),
+     "slope width of the coat along the tangent"},
+    {SR_PARAM_FLOAT, "coat_alpha_y", "1", 0, 1, 0, offsetof(struct sr_bsdf_coated, coat_ggx.alpha_y),
+     "slope width of the coat across it"},
+    {SR_PARAM_FLOAT, "base_alpha_x", "1", 0, 1, 0, offsetof(struct sr_bsdf_coated, base_ggx.alpha_x),
+     "slope width of the metal along the tangent"},
+    {SR_PARAM_FLOAT, "base_alpha_y", "1", 0, 1, 0, offsetof(struct sr_bsdf_coated, base_ggx.alpha_y),
+     "slope width of the metal across it"},
+    {SR_PARAM_FLOAT, "coat_eta", "1", 0.5, 3, 1.5, offsetof(struct sr_bsdf_coated, coat_eta),
+     "index of refraction of the coat"},
+    {SR_PARAM_FLOAT, "thickness", "1", 0, 10, 0.01, offsetof(struct sr_bsdf_coated, thickness),
+     "of the medium, in mean free paths"},
+    {SR_PARAM_FLOAT, "g", "1", -0.95, 0.95, 0, offsetof(struct sr_bsdf_coated, g),
+     "mean cosine of scattering in the medium"},
+    {SR_PARAM_INT, "max_depth", "1", 1, 100, 10, offsetof(struct sr_bsdf_coated, max_depth),
+     "longest walk, in crossings and scatterings"},
+    {SR_PARAM_INT, "sample_count", "1", 1, 64, 1, offsetof(struct sr_bsdf_coated, sample_count),
+     "walks for one value of f"},
     {0},
 };
 
@@ -37,7 +49,8 @@ static uint32_t lobes(const void *self)
     struct layers l = layers_of(self, true);
     if (is_delta(&l))
         return SR_LOBE_REFLECTION | SR_LOBE_SPECULAR;
-    return SR_LOBE_REFLECTION | (l.has_medium ? SR_LOBE_DIFFUSE : 0) | (l.top.is_smooth && l.base_is_smooth ? 0 : SR_LOBE_GLOSSY) |
+    return SR_LOBE_REFLECTION | (l.has_medium ? SR_LOBE_DIFFUSE : 0) |
+           (l.top.is_smooth && l.base_is_smooth ? 0 : SR_LOBE_GLOSSY) |
            (l.top.is_smooth && (l.top.eta != 1 || l.base_is_smooth) ? SR_LOBE_SPECULAR : 0);
 }
 
@@ -99,7 +112,8 @@ static float pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mod
     return density(&l, wo.z < 0 ? sr_neg(wo) : wo, wo.z < 0 ? sr_neg(wi) : wi);
 }
 
-static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode, struct sr_bsdf_sample *s)
+static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode,
+                   struct sr_bsdf_sample *s)
 {
     (void)mode;
     if (wo.z == 0)
@@ -114,6 +128,13 @@ static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum s
 }
 
 const struct sr_bsdf_model sr_bsdf_coated_conductor = {
-    .name = "coated_conductor", .params = params, .size = sizeof(struct sr_bsdf_coated), .is_random = true,
-    .lobes = lobes, .f = f, .pdf = pdf, .sample = sample, .f_pdf = f_pdf,
+    .name = "coated_conductor",
+    .params = params,
+    .size = sizeof(struct sr_bsdf_coated),
+    .is_random = true,
+    .lobes = lobes,
+    .f = f,
+    .pdf = pdf,
+    .sample = sample,
+    .f_pdf = f_pdf,
 };

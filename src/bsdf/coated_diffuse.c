@@ -16,14 +16,22 @@
 
 static const struct sr_param params[] = {
     {SR_PARAM_ALBEDO, "reflectance", "1", 0, 1, 0.5, offsetof(struct sr_bsdf_coated, base_reflectance), "of the base"},
-    {SR_PARAM_ALBEDO, "albedo", "1", 0, 1, 0, offsetof(struct sr_bsdf_coated, albedo), "of the medium between; black only absorbs"},
-    {SR_PARAM_FLOAT, "coat_alpha_x", "1", 0, 1, 0, offsetof(struct sr_bsdf_coated, coat_ggx.alpha_x), "slope width of the coat along the tangent"},
-    {SR_PARAM_FLOAT, "coat_alpha_y", "1", 0, 1, 0, offsetof(struct sr_bsdf_coated, coat_ggx.alpha_y), "slope width of the coat across it"},
-    {SR_PARAM_FLOAT, "coat_eta", "1", 0.5, 3, 1.5, offsetof(struct sr_bsdf_coated, coat_eta), "index of refraction of the coat"},
-    {SR_PARAM_FLOAT, "thickness", "1", 0, 10, 0.01, offsetof(struct sr_bsdf_coated, thickness), "of the medium, in mean free paths"},
-    {SR_PARAM_FLOAT, "g", "1", -0.95, 0.95, 0, offsetof(struct sr_bsdf_coated, g), "mean cosine of scattering in the medium"},
-    {SR_PARAM_INT, "max_depth", "1", 1, 100, 10, offsetof(struct sr_bsdf_coated, max_depth), "longest walk, in crossings and scatterings"},
-    {SR_PARAM_INT, "sample_count", "1", 1, 64, 1, offsetof(struct sr_bsdf_coated, sample_count), "walks for one value of f"},
+    {SR_PARAM_ALBEDO, "albedo", "1", 0, 1, 0, offsetof(struct sr_bsdf_coated, albedo),
+     "of the medium between; black only absorbs"},
+    {SR_PARAM_FLOAT, "coat_alpha_x", "1", 0, 1, 0, offsetof(struct sr_bsdf_coated, coat_ggx.alpha_x),
+     "slope width of the coat along the tangent"},
+    {SR_PARAM_FLOAT, "coat_alpha_y", "1", 0, 1, 0, offsetof(struct sr_bsdf_coated, coat_ggx.alpha_y),
+     "slope width of the coat across it"},
+    {SR_PARAM_FLOAT, "coat_eta", "1", 0.5, 3, 1.5, offsetof(struct sr_bsdf_coated, coat_eta),
+     "index of refraction of the coat"},
+    {SR_PARAM_FLOAT, "thickness", "1", 0, 10, 0.01, offsetof(struct sr_bsdf_coated, thickness),
+     "of the medium, in mean free paths"},
+    {SR_PARAM_FLOAT, "g", "1", -0.95, 0.95, 0, offsetof(struct sr_bsdf_coated, g),
+     "mean cosine of scattering in the medium"},
+    {SR_PARAM_INT, "max_depth", "1", 1, 100, 10, offsetof(struct sr_bsdf_coated, max_depth),
+     "longest walk, in crossings and scatterings"},
+    {SR_PARAM_INT, "sample_count", "1", 1, 64, 1, offsetof(struct sr_bsdf_coated, sample_count),
+     "walks for one value of f"},
     {0},
 };
 
@@ -43,7 +51,8 @@ static float twice_e3(float x)
         return 0;
     float e = exp_minus(x), e1;
     if (x < 1)
-        e1 = minus_log(x) - 0.57721566f + x * (0.99999193f + x * (-0.24991055f + x * (0.05519968f + x * (-0.00976004f + x * 0.00107857f))));
+        e1 = minus_log(x) - 0.57721566f +
+             x * (0.99999193f + x * (-0.24991055f + x * (0.05519968f + x * (-0.00976004f + x * 0.00107857f))));
     else
         e1 = e / x * (0.2677737343f + x * (8.6347608925f + x * (18.0590169730f + x * (8.5733287401f + x)))) /
              (3.9584969228f + x * (21.0996530827f + x * (25.6329561486f + x * (9.5733223454f + x))));
@@ -53,8 +62,10 @@ static float twice_e3(float x)
 /* Fi above, by Gauss-Legendre quadrature of 8 nodes in a variable that makes the integrand smooth. */
 static float inner_reflectance(float eta, float thickness)
 {
-    static const float node[8] = {0.01985507f, 0.10166676f, 0.23723380f, 0.40828268f, 0.59171732f, 0.76276620f, 0.89833324f, 0.98014493f};
-    static const float weight[8] = {0.05061427f, 0.11119052f, 0.15685332f, 0.18134189f, 0.18134189f, 0.15685332f, 0.11119052f, 0.05061427f};
+    static const float node[8] = {0.01985507f, 0.10166676f, 0.23723380f, 0.40828268f,
+                                  0.59171732f, 0.76276620f, 0.89833324f, 0.98014493f};
+    static const float weight[8] = {0.05061427f, 0.11119052f, 0.15685332f, 0.18134189f,
+                                    0.18134189f, 0.15685332f, 0.11119052f, 0.05061427f};
     if (eta == 1)
         return 0;
     float d = 2 * thickness, sum = 0;
@@ -102,10 +113,10 @@ static bool is_closed(const struct layers *l)
 
 /* What sample chooses by: the share of light that the coat mirrors, and the largest share that the base returns. */
 struct shares {
-    float mirror;       // [1] F
-    float arrival;      // [1] A(wo)
+    float mirror;        // [1] F
+    float arrival;       // [1] A(wo)
     sr_spectrum bounces; // [1]
-    float probability;  // [1] of the mirror
+    float probability;   // [1] of the mirror
 };
 static struct shares shares_of(const struct sr_bsdf_coated *c, float cos_o)
 {
@@ -138,10 +149,11 @@ static sr_spectrum rough_f(const struct layers *l, sr_vec3 wo, sr_vec3 wi)
     int count = c->sample_count > 0 ? c->sample_count : 1;
     for (int n = 0; n < count; ++n) {
         struct interface_sample enter, leave, back;
-        if (!draw_top(l, wo, SR_LOBE_TRANSMISSION, &rng, &enter) || !draw_top(l, wi, SR_LOBE_TRANSMISSION, &rng, &leave))
+        if (!draw_top(l, wo, SR_LOBE_TRANSMISSION, &rng, &enter) ||
+            !draw_top(l, wi, SR_LOBE_TRANSMISSION, &rng, &leave))
             continue;
-        sr_spectrum beta = c->base_reflectance *
-                           (enter.weight * crossing(c->thickness, enter.wi) * leave.weight * crossing(c->thickness, leave.wi));
+        sr_spectrum beta = c->base_reflectance * (enter.weight * crossing(c->thickness, enter.wi) * leave.weight *
+                                                  crossing(c->thickness, leave.wi));
         sum += beta;
         sr_spectrum gain = c->base_reflectance;
         float most = sr_spectrum_max(gain), kept = 1;
@@ -205,7 +217,8 @@ static float pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mod
     return density(&l, wo.z < 0 ? sr_neg(wo) : wo, wo.z < 0 ? sr_neg(wi) : wi);
 }
 
-static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode, struct sr_bsdf_sample *s)
+static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode,
+                   struct sr_bsdf_sample *s)
 {
     (void)mode;
     const struct sr_bsdf_coated *c = self;
@@ -249,6 +262,14 @@ static sr_spectrum albedo(const void *self, sr_vec3 wo)
 }
 
 const struct sr_bsdf_model sr_bsdf_coated_diffuse = {
-    .name = "coated_diffuse", .params = params, .size = sizeof(struct sr_bsdf_coated), .is_random = true,
-    .lobes = lobes, .f = f, .pdf = pdf, .sample = sample, .f_pdf = f_pdf, .albedo = albedo,
+    .name = "coated_diffuse",
+    .params = params,
+    .size = sizeof(struct sr_bsdf_coated),
+    .is_random = true,
+    .lobes = lobes,
+    .f = f,
+    .pdf = pdf,
+    .sample = sample,
+    .f_pdf = f_pdf,
+    .albedo = albedo,
 };

@@ -11,7 +11,8 @@
 static const struct sr_param params[] = {
     {SR_PARAM_UNBOUNDED, "eta", "1", 0.02, 8, 0.2, offsetof(struct sr_bsdf_conductor, eta), "index of refraction"},
     {SR_PARAM_UNBOUNDED, "k", "1", 0, 10, 3.9, offsetof(struct sr_bsdf_conductor, k), "absorption index"},
-    {SR_PARAM_FLOAT, "alpha_x", "1", 0, 1, 0, offsetof(struct sr_bsdf_conductor, ggx.alpha_x), "slope width along the tangent"},
+    {SR_PARAM_FLOAT, "alpha_x", "1", 0, 1, 0, offsetof(struct sr_bsdf_conductor, ggx.alpha_x),
+     "slope width along the tangent"},
     {SR_PARAM_FLOAT, "alpha_y", "1", 0, 1, 0, offsetof(struct sr_bsdf_conductor, ggx.alpha_y), "slope width across it"},
     {0},
 };
@@ -47,7 +48,8 @@ static float pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mod
     return p;
 }
 
-static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode, struct sr_bsdf_sample *s)
+static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode,
+                   struct sr_bsdf_sample *s)
 {
     const struct sr_bsdf_conductor *m = self;
     (void)u_lobe;
@@ -75,6 +77,13 @@ static sr_spectrum albedo(const void *self, sr_vec3 wo)
 }
 
 const struct sr_bsdf_model sr_bsdf_conductor = {
-    .name = "conductor", .params = params, .size = sizeof(struct sr_bsdf_conductor),
-    .lobes = lobes, .f = f, .pdf = pdf, .sample = sample, .f_pdf = f_pdf, .albedo = albedo,
+    .name = "conductor",
+    .params = params,
+    .size = sizeof(struct sr_bsdf_conductor),
+    .lobes = lobes,
+    .f = f,
+    .pdf = pdf,
+    .sample = sample,
+    .f_pdf = f_pdf,
+    .albedo = albedo,
 };

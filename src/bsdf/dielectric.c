@@ -11,9 +11,12 @@
 #include "bsdf/microfacet.h"
 
 static const struct sr_param params[] = {
-    {SR_PARAM_FLOAT, "eta", "1", 0.25, 4, 1.5, offsetof(struct sr_bsdf_dielectric, eta), "index of refraction: inside over outside"},
-    {SR_PARAM_FLOAT, "alpha_x", "1", 0, 1, 0, offsetof(struct sr_bsdf_dielectric, ggx.alpha_x), "slope width along the tangent"},
-    {SR_PARAM_FLOAT, "alpha_y", "1", 0, 1, 0, offsetof(struct sr_bsdf_dielectric, ggx.alpha_y), "slope width across it"},
+    {SR_PARAM_FLOAT, "eta", "1", 0.25, 4, 1.5, offsetof(struct sr_bsdf_dielectric, eta),
+     "index of refraction: inside over outside"},
+    {SR_PARAM_FLOAT, "alpha_x", "1", 0, 1, 0, offsetof(struct sr_bsdf_dielectric, ggx.alpha_x),
+     "slope width along the tangent"},
+    {SR_PARAM_FLOAT, "alpha_y", "1", 0, 1, 0, offsetof(struct sr_bsdf_dielectric, ggx.alpha_y),
+     "slope width across it"},
     {0},
 };
 
@@ -50,7 +53,8 @@ static float pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mod
     return p;
 }
 
-static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode, struct sr_bsdf_sample *s)
+static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode,
+                   struct sr_bsdf_sample *s)
 {
     const struct sr_bsdf_dielectric *m = self;
     struct interface a = interface_of(m->eta, m->ggx);
@@ -60,7 +64,10 @@ static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum s
     float value = i.weight * i.pdf / fabsf(i.wi.z);
     if (mode == SR_RADIANCE && i.transmits)
         value /= i.eta * i.eta;
-    *s = (struct sr_bsdf_sample){.wi = i.wi, .f = SR_BLACK + value, .pdf = i.pdf, .eta = i.eta,
+    *s = (struct sr_bsdf_sample){.wi = i.wi,
+                                 .f = SR_BLACK + value,
+                                 .pdf = i.pdf,
+                                 .eta = i.eta,
                                  .lobe = (i.transmits ? SR_LOBE_TRANSMISSION : SR_LOBE_REFLECTION) |
                                          (a.is_smooth ? SR_LOBE_SPECULAR : SR_LOBE_GLOSSY)};
     return true;
@@ -75,6 +82,13 @@ static sr_spectrum albedo(const void *self, sr_vec3 wo)
 }
 
 const struct sr_bsdf_model sr_bsdf_dielectric = {
-    .name = "dielectric", .params = params, .size = sizeof(struct sr_bsdf_dielectric),
-    .lobes = lobes, .f = f, .pdf = pdf, .sample = sample, .f_pdf = f_pdf, .albedo = albedo,
+    .name = "dielectric",
+    .params = params,
+    .size = sizeof(struct sr_bsdf_dielectric),
+    .lobes = lobes,
+    .f = f,
+    .pdf = pdf,
+    .sample = sample,
+    .f_pdf = f_pdf,
+    .albedo = albedo,
 };

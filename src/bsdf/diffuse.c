@@ -7,7 +7,8 @@
 #include "bsdf/microfacet.h"
 
 static const struct sr_param params[] = {
-    {SR_PARAM_ALBEDO, "reflectance", "1", 0, 1, 0.5, offsetof(struct sr_bsdf_diffuse, reflectance), "share of light that is reflected"},
+    {SR_PARAM_ALBEDO, "reflectance", "1", 0, 1, 0.5, offsetof(struct sr_bsdf_diffuse, reflectance),
+     "share of light that is reflected"},
     {0},
 };
 
@@ -31,14 +32,18 @@ static float pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mod
     return sr_same_hemisphere(wo, wi) ? fabsf(wi.z) * SR_INV_PI : 0;
 }
 
-static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode, struct sr_bsdf_sample *s)
+static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode,
+                   struct sr_bsdf_sample *s)
 {
     const struct sr_bsdf_diffuse *m = self;
     (void)u_lobe;
     (void)mode;
     sr_vec3 wi = sr_warp_cosine_hemisphere(u);
     wi.z = copysignf(wi.z, wo.z);
-    *s = (struct sr_bsdf_sample){.wi = wi, .f = m->reflectance * SR_INV_PI, .pdf = fabsf(wi.z) * SR_INV_PI, .eta = 1,
+    *s = (struct sr_bsdf_sample){.wi = wi,
+                                 .f = m->reflectance * SR_INV_PI,
+                                 .pdf = fabsf(wi.z) * SR_INV_PI,
+                                 .eta = 1,
                                  .lobe = SR_LOBE_REFLECTION | SR_LOBE_DIFFUSE};
     return s->pdf > 0 && wo.z != 0;
 }
@@ -51,6 +56,12 @@ static sr_spectrum albedo(const void *self, sr_vec3 wo)
 }
 
 const struct sr_bsdf_model sr_bsdf_diffuse = {
-    .name = "diffuse", .params = params, .size = sizeof(struct sr_bsdf_diffuse),
-    .lobes = lobes, .f = f, .pdf = pdf, .sample = sample, .albedo = albedo,
+    .name = "diffuse",
+    .params = params,
+    .size = sizeof(struct sr_bsdf_diffuse),
+    .lobes = lobes,
+    .f = f,
+    .pdf = pdf,
+    .sample = sample,
+    .albedo = albedo,
 };

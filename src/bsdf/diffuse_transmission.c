@@ -51,7 +51,8 @@ static float pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mod
     return (side > 0 ? p : 1 - p) * (fabsf(wi.z) * SR_INV_PI);
 }
 
-static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode, struct sr_bsdf_sample *s)
+static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode,
+                   struct sr_bsdf_sample *s)
 {
     const struct sr_bsdf_diffuse_transmission *m = self;
     (void)mode;
@@ -61,8 +62,10 @@ static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum s
     bool reflects = u_lobe < p;
     sr_vec3 wi = sr_warp_cosine_hemisphere(u);
     wi.z = copysignf(wi.z, reflects ? wo.z : -wo.z);
-    *s = (struct sr_bsdf_sample){.wi = wi, .f = (reflects ? m->reflectance : m->transmittance) * SR_INV_PI,
-                                 .pdf = (reflects ? p : 1 - p) * (fabsf(wi.z) * SR_INV_PI), .eta = 1,
+    *s = (struct sr_bsdf_sample){.wi = wi,
+                                 .f = (reflects ? m->reflectance : m->transmittance) * SR_INV_PI,
+                                 .pdf = (reflects ? p : 1 - p) * (fabsf(wi.z) * SR_INV_PI),
+                                 .eta = 1,
                                  .lobe = (reflects ? SR_LOBE_REFLECTION : SR_LOBE_TRANSMISSION) | SR_LOBE_DIFFUSE};
     return s->pdf > 0;
 }
@@ -75,6 +78,12 @@ static sr_spectrum albedo(const void *self, sr_vec3 wo)
 }
 
 const struct sr_bsdf_model sr_bsdf_diffuse_transmission = {
-    .name = "diffuse_transmission", .params = params, .size = sizeof(struct sr_bsdf_diffuse_transmission),
-    .lobes = lobes, .f = f, .pdf = pdf, .sample = sample, .albedo = albedo,
+    .name = "diffuse_transmission",
+    .params = params,
+    .size = sizeof(struct sr_bsdf_diffuse_transmission),
+    .lobes = lobes,
+    .f = f,
+    .pdf = pdf,
+    .sample = sample,
+    .albedo = albedo,
 };

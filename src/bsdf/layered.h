@@ -32,7 +32,9 @@ struct layers {
 
 static inline struct layers layers_of(const struct sr_bsdf_coated *c, bool metal)
 {
-    return (struct layers){.c = c, .top = interface_of(c->coat_eta, c->coat_ggx), .base = ggx_usable(c->base_ggx),
+    return (struct layers){.c = c,
+                           .top = interface_of(c->coat_eta, c->coat_ggx),
+                           .base = ggx_usable(c->base_ggx),
                            .base_is_smooth = metal && ggx_is_smooth(c->base_ggx),
                            .has_medium = !sr_spectrum_is_black(c->albedo)};
 }
@@ -54,11 +56,12 @@ static inline float minus_log(float x)
     int32_t bits;
     memcpy(&bits, &x, 4);
     int32_t exponent = (bits - 0x3f3504f3) >> 23; // the mantissa in sqrt(1/2) ... sqrt(2)
-    bits -= exponent << 23;
+    bits -= exponent * (1 << 23);
     float m;
     memcpy(&m, &bits, 4);
     float s = (m - 1) / (m + 1), s2 = s * s;
-    return -2 * s * (1 + s2 * (1.0f / 3 + s2 * (1.0f / 5 + s2 * (1.0f / 7 + s2 * (1.0f / 9))))) - (float)exponent * 0.69314718f;
+    return -2 * s * (1 + s2 * (1.0f / 3 + s2 * (1.0f / 5 + s2 * (1.0f / 7 + s2 * (1.0f / 9))))) -
+           (float)exponent * 0.69314718f;
 }
 static inline float crossing(float distance, sr_vec3 w) // transmittance
 {
@@ -96,7 +99,8 @@ static inline float power_heuristic(float a, float b)
     return a2 < INFINITY ? a2 / (a2 + b * b) : 1;
 }
 
-static inline bool draw_top(const struct layers *l, sr_vec3 wo, uint32_t lobes, struct sr_rng *rng, struct interface_sample *s)
+static inline bool draw_top(const struct layers *l, sr_vec3 wo, uint32_t lobes, struct sr_rng *rng,
+                            struct interface_sample *s)
 {
     if (l->top.is_smooth) // nothing to draw within a lobe
         return interface_sample(&l->top, wo, 0.5f, (sr_vec2){0, 0}, lobes, s);
@@ -127,8 +131,8 @@ static inline sr_spectrum base_f_pdf(const struct layers *l, bool metal, sr_vec3
 }
 
 /* weight = f cos / pdf */
-static inline bool base_sample(const struct layers *l, bool metal, sr_vec3 wo, struct sr_rng *rng, sr_vec3 *wi, sr_spectrum *weight,
-                               float *pdf)
+static inline bool base_sample(const struct layers *l, bool metal, sr_vec3 wo, struct sr_rng *rng, sr_vec3 *wi,
+                               sr_spectrum *weight, float *pdf)
 {
     if (!metal) {
         *wi = cosine_direction(uniform2(rng));
@@ -196,7 +200,8 @@ static inline sr_spectrum layered_f(const struct layers *l, bool metal, sr_vec3 
 
     for (int n = 0; n < count; ++n) {
         struct interface_sample enter, leave, s;
-        if (!draw_top(l, wo, SR_LOBE_TRANSMISSION, &rng, &enter) || !draw_top(l, wi, SR_LOBE_TRANSMISSION, &rng, &leave))
+        if (!draw_top(l, wo, SR_LOBE_TRANSMISSION, &rng, &enter) ||
+            !draw_top(l, wi, SR_LOBE_TRANSMISSION, &rng, &leave))
             continue;
         sr_vec3 up = sr_neg(leave.wi);
         float leave_f = leave.weight / up.z; // f / pdf of the way out
@@ -268,8 +273,7 @@ static inline sr_spectrum layered_f(const struct layers *l, bool metal, sr_vec3 
                 float leave_pdf;
                 float f = leave_f_pdf(l, w, wi, &leave_pdf);
                 if (f > 0)
-                    sum += beta * (crossing(top_z, w) * f *
-                                   (l->base_is_smooth ? 1 : power_heuristic(pdf, leave_pdf)));
+                    sum += beta * (crossing(top_z, w) * f * (l->base_is_smooth ? 1 : power_heuristic(pdf, leave_pdf)));
             }
         }
     }
@@ -277,7 +281,8 @@ static inline sr_spectrum layered_f(const struct layers *l, bool metal, sr_vec3 
 }
 
 /* A walk until it leaves. s->f / s->pdf |cos| is its throughput; the density itself is unknown. */
-static inline bool layered_sample(const struct layers *l, bool metal, sr_vec3 wo, float u_lobe, sr_vec2 u, struct sr_bsdf_sample *s)
+static inline bool layered_sample(const struct layers *l, bool metal, sr_vec3 wo, float u_lobe, sr_vec2 u,
+                                  struct sr_bsdf_sample *s)
 {
     const struct sr_bsdf_coated *c = l->c;
     const uint32_t both = SR_LOBE_REFLECTION | SR_LOBE_TRANSMISSION;
@@ -285,7 +290,8 @@ static inline bool layered_sample(const struct layers *l, bool metal, sr_vec3 wo
     struct interface_sample i;
     if (!interface_sample(&l->top, wo, u_lobe, u, both, &i))
         return false;
-    *s = (struct sr_bsdf_sample){.eta = 1, .lobe = SR_LOBE_REFLECTION | (l->top.is_smooth ? SR_LOBE_SPECULAR : SR_LOBE_GLOSSY)};
+    *s = (struct sr_bsdf_sample){.eta = 1,
+                                 .lobe = SR_LOBE_REFLECTION | (l->top.is_smooth ? SR_LOBE_SPECULAR : SR_LOBE_GLOSSY)};
     if (!i.transmits) {
         s->wi = i.wi;
         s->pdf = i.pdf;
@@ -342,7 +348,9 @@ static inline bool layered_sample(const struct layers *l, bool metal, sr_vec3 wo
             s->wi = w;
             s->pdf = 1;
             s->f = beta / w.z;
-            s->lobe = SR_LOBE_REFLECTION | (mirrored ? SR_LOBE_SPECULAR : metal && !l->has_medium ? SR_LOBE_GLOSSY : SR_LOBE_DIFFUSE);
+            s->lobe = SR_LOBE_REFLECTION | (mirrored                  ? SR_LOBE_SPECULAR
+                                            : metal && !l->has_medium ? SR_LOBE_GLOSSY
+                                                                      : SR_LOBE_DIFFUSE);
             s->pdf_is_proportional = !mirrored;
             return w.z > 0;
         }

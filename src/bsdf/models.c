@@ -5,14 +5,8 @@
 #include <string.h>
 
 const struct sr_bsdf_model *const sr_bsdf_models[] = {
-    &sr_bsdf_diffuse,
-    &sr_bsdf_diffuse_transmission,
-    &sr_bsdf_conductor,
-    &sr_bsdf_dielectric,
-    &sr_bsdf_thin_dielectric,
-    &sr_bsdf_coated_diffuse,
-    &sr_bsdf_coated_conductor,
-    NULL,
+    &sr_bsdf_diffuse,         &sr_bsdf_diffuse_transmission, &sr_bsdf_conductor,        &sr_bsdf_dielectric,
+    &sr_bsdf_thin_dielectric, &sr_bsdf_coated_diffuse,       &sr_bsdf_coated_conductor, NULL,
 };
 
 const struct sr_bsdf_model *sr_bsdf_model_find(const char *name)

@@ -9,7 +9,8 @@
 #include "bsdf/microfacet.h"
 
 static const struct sr_param params[] = {
-    {SR_PARAM_FLOAT, "eta", "1", 0.25, 4, 1.5, offsetof(struct sr_bsdf_thin_dielectric, eta), "index of refraction of the pane"},
+    {SR_PARAM_FLOAT, "eta", "1", 0.25, 4, 1.5, offsetof(struct sr_bsdf_thin_dielectric, eta),
+     "index of refraction of the pane"},
     {0},
 };
 
@@ -37,7 +38,8 @@ static float pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mod
     return 0;
 }
 
-static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode, struct sr_bsdf_sample *s)
+static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode,
+                   struct sr_bsdf_sample *s)
 {
     const struct sr_bsdf_thin_dielectric *m = self;
     (void)u;
@@ -49,7 +51,9 @@ static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum s
     bool reflects = u_lobe < R;
     float share = reflects ? R : 1 - R;
     *s = (struct sr_bsdf_sample){.wi = reflects ? (sr_vec3){-wo.x, -wo.y, wo.z} : sr_neg(wo),
-                                 .f = SR_BLACK + share / fabsf(wo.z), .pdf = share, .eta = 1,
+                                 .f = SR_BLACK + share / fabsf(wo.z),
+                                 .pdf = share,
+                                 .eta = 1,
                                  .lobe = (reflects ? SR_LOBE_REFLECTION : SR_LOBE_TRANSMISSION) | SR_LOBE_SPECULAR};
     return share > 0;
 }
@@ -62,6 +66,12 @@ static sr_spectrum albedo(const void *self, sr_vec3 wo)
 }
 
 const struct sr_bsdf_model sr_bsdf_thin_dielectric = {
-    .name = "thin_dielectric", .params = params, .size = sizeof(struct sr_bsdf_thin_dielectric),
-    .lobes = lobes, .f = f, .pdf = pdf, .sample = sample, .albedo = albedo,
+    .name = "thin_dielectric",
+    .params = params,
+    .size = sizeof(struct sr_bsdf_thin_dielectric),
+    .lobes = lobes,
+    .f = f,
+    .pdf = pdf,
+    .sample = sample,
+    .albedo = albedo,
 };

@@ -96,7 +96,8 @@ static bool is_random(struct sr_bsdf b)
     const struct sr_bsdf_coated *c = (const void *)b.data;
     if (!b.model->is_random)
         return false;
-    bool smooth = sr_ggx_is_smooth(c->coat_ggx) && (b.model == &sr_bsdf_coated_diffuse || sr_ggx_is_smooth(c->base_ggx));
+    bool smooth =
+        sr_ggx_is_smooth(c->coat_ggx) && (b.model == &sr_bsdf_coated_diffuse || sr_ggx_is_smooth(c->base_ggx));
     return !smooth || !sr_spectrum_is_black(c->albedo);
 }
 
@@ -106,12 +107,13 @@ static double luminous(sr_spectrum f) // one number for a spectrum: two waveleng
 }
 
 #define FOR_EACH_MODEL(m)                                                                                              \
-    for (int m##_i = 0; sr_bsdf_models[m##_i]; ++m##_i)                                                                 \
+    for (int m##_i = 0; sr_bsdf_models[m##_i]; ++m##_i)                                                                \
         for (const struct sr_bsdf_model *m = sr_bsdf_models[m##_i], *once = m; once; once = NULL)
 
 TEST(bsdf_tables_describe_their_structs)
 {
-    FOR_EACH_MODEL(m) {
+    FOR_EACH_MODEL(m)
+    {
         EXPECT(m->size > 0 && m->size <= SR_BSDF_SIZE);
         EXPECT(sr_bsdf_model_find(m->name) == m);
         for (const struct sr_param *p = m->params; p->name; ++p) {
@@ -126,7 +128,8 @@ TEST(bsdf_tables_describe_their_structs)
 /* f(wo, wi) of radiance is f(wi, wo) of importance: light does not care which way we follow it (Veach 1997). */
 TEST(bsdf_radiance_and_importance_are_adjoint)
 {
-    FOR_EACH_MODEL(m) {
+    FOR_EACH_MODEL(m)
+    {
         struct sr_rng rng = sr_rng_seed(11, 1);
         for (int set = 0; set < 64 && !m->not_reciprocal; ++set) {
             struct sr_bsdf b = draw(m, &rng, 0.2f);
@@ -136,7 +139,8 @@ TEST(bsdf_radiance_and_importance_are_adjoint)
                     sr_spectrum f = sr_bsdf_f(&b, wo, wi, SR_RADIANCE), g = sr_bsdf_f(&b, wi, wo, SR_IMPORTANCE);
                     for (int k = 0; k < SR_LAMBDA_COUNT; ++k)
                         if (fabsf(f[k] - g[k]) > 5e-3f * fmaxf(f[k], g[k]) + 1e-5f)
-                            test_fail(__FILE__, __LINE__, "%s: f(wo, wi) = %g but f*(wi, wo) = %g", m->name, (double)f[k], (double)g[k]);
+                            test_fail(__FILE__, __LINE__, "%s: f(wo, wi) = %g but f*(wi, wo) = %g", m->name,
+                                      (double)f[k], (double)g[k]);
                 }
             } else if (set < 24) {
                 sr_vec3 wo = viewer(&rng), wi = viewer(&rng);
@@ -144,7 +148,8 @@ TEST(bsdf_radiance_and_importance_are_adjoint)
                 struct sr_tally t = {0};
                 for (uint32_t i = 0; i < 8000; ++i) {
                     seed_of(b.data, i, true);
-                    sr_tally_add(&t, luminous(sr_bsdf_f(&b, wo, wi, SR_RADIANCE) - sr_bsdf_f(&b, wi, wo, SR_IMPORTANCE)));
+                    sr_tally_add(&t,
+                                 luminous(sr_bsdf_f(&b, wo, wi, SR_RADIANCE) - sr_bsdf_f(&b, wi, wo, SR_IMPORTANCE)));
                 }
                 if (!(fabs(t.mean) <= 4.9 * sr_tally_standard_error(&t)))
                     test_fail(__FILE__, __LINE__, "%s, set %d: f(wo, wi) - f*(wi, wo) = %g +- %g", m->name, set, t.mean,
@@ -157,7 +162,8 @@ TEST(bsdf_radiance_and_importance_are_adjoint)
 /* No surface returns more light than arrives: E = mean of f |cos| / pdf <= 1 at each wavelength. */
 TEST(bsdf_does_not_make_light)
 {
-    FOR_EACH_MODEL(m) {
+    FOR_EACH_MODEL(m)
+    {
         struct sr_rng rng = sr_rng_seed(12, 1);
         for (int set = 0; set < 64; ++set) {
             struct sr_bsdf b = draw(m, &rng, 0.3f);
@@ -178,7 +184,8 @@ TEST(bsdf_does_not_make_light)
             }
             for (int k = 0; k < SR_LAMBDA_COUNT; ++k) {
                 if (!(E[k].mean <= 1 + 1e-5 + 4.9 * sr_tally_standard_error(&E[k])))
-                    test_fail(__FILE__, __LINE__, "%s, set %d: E = %g +- %g", m->name, set, E[k].mean, sr_tally_standard_error(&E[k]));
+                    test_fail(__FILE__, __LINE__, "%s, set %d: E = %g +- %g", m->name, set, E[k].mean,
+                              sr_tally_standard_error(&E[k]));
                 if (isfinite(known[k]))
                     EXPECT_NEAR(E[k].mean, known[k], 1e-5 + 4.9 * sr_tally_standard_error(&E[k]));
             }
@@ -198,7 +205,8 @@ static double cell_probabilities(const struct sr_bsdf *b, sr_vec3 wo, double *ce
         for (int j = 0; j < CELLS_PHI; ++j) {
             double sum = 0;
             for (int k = 0; k < FINE * FINE; ++k) {
-                double z = 2 * (i + (k / FINE + 0.5) / FINE) / CELLS_Z - 1, phi = 2 * PI * (j + (k % FINE + 0.5) / FINE) / CELLS_PHI;
+                double z = 2 * (i + (k / FINE + 0.5) / FINE) / CELLS_Z - 1,
+                       phi = 2 * PI * (j + (k % FINE + 0.5) / FINE) / CELLS_PHI;
                 sr_vec3 wi = {(float)(sqrt(1 - z * z) * cos(phi)), (float)(sqrt(1 - z * z) * sin(phi)), (float)z};
                 sum += (double)sr_bsdf_pdf(b, wo, wi, SR_RADIANCE);
             }
@@ -216,7 +224,8 @@ static int cell_of(sr_vec3 w)
 /* Samples fall as the density says (Pearson's chi-square); the rest are mirrored or absorbed. */
 TEST(bsdf_sampler_follows_its_pdf)
 {
-    FOR_EACH_MODEL(m) {
+    FOR_EACH_MODEL(m)
+    {
         struct sr_rng rng = sr_rng_seed(13, 1);
         int tested = 0;
         for (int set = 0; set < 32 && tested < 16; ++set) {
@@ -248,8 +257,8 @@ TEST(bsdf_sampler_follows_its_pdf)
             int degrees;
             p = sr_chi2_test(observed, expected, CELLS_Z * CELLS_PHI + 1, 5, &chi2, &degrees);
             if (!(p > 1e-6))
-                test_fail(__FILE__, __LINE__, "%s, set %d: chi2 = %g of %d degrees, p = %g; %g of %g elsewhere", m->name, set, chi2,
-                          degrees, p, observed[CELLS_Z * CELLS_PHI], elsewhere);
+                test_fail(__FILE__, __LINE__, "%s, set %d: chi2 = %g of %d degrees, p = %g; %g of %g elsewhere",
+                          m->name, set, chi2, degrees, p, observed[CELLS_Z * CELLS_PHI], elsewhere);
         }
     }
 }
@@ -258,7 +267,8 @@ TEST(bsdf_sampler_follows_its_pdf)
  * functions g of wi (1, wi.x, wi.z), the integral by directions that do not know the BSDF. Delta lobes left out. */
 TEST(bsdf_sampler_sends_light_where_f_says)
 {
-    FOR_EACH_MODEL(m) {
+    FOR_EACH_MODEL(m)
+    {
         struct sr_rng rng = sr_rng_seed(14, 1);
         for (int set = 0; set < 24; ++set) {
             struct sr_bsdf b = draw(m, &rng, 0);
@@ -279,7 +289,8 @@ TEST(bsdf_sampler_sends_light_where_f_says)
                 sr_vec3 wi = sr_warp_cosine_hemisphere(square(&rng));
                 if (i & 1)
                     wi = sr_neg(wi);
-                double v = 2 * PI * luminous(sr_bsdf_f(&b, wo, wi, SR_IMPORTANCE)), h[3] = {1, (double)wi.x, (double)wi.z};
+                double v = 2 * PI * luminous(sr_bsdf_f(&b, wo, wi, SR_IMPORTANCE)),
+                       h[3] = {1, (double)wi.x, (double)wi.z};
                 for (int k = 0; k < 3; ++k) {
                     sr_tally_add(&drawn[k], w * g[k]);
                     sr_tally_add(&described[k], v * h[k]);
@@ -288,8 +299,8 @@ TEST(bsdf_sampler_sends_light_where_f_says)
             for (int k = 0; k < 3; ++k) {
                 double error = hypot(sr_tally_standard_error(&drawn[k]), sr_tally_standard_error(&described[k]));
                 if (!(fabs(drawn[k].mean - described[k].mean) <= 4.9 * error + 1e-5))
-                    test_fail(__FILE__, __LINE__, "%s, set %d, moment %d: drawn %g, described %g, z = %.1f", m->name, set, k,
-                              drawn[k].mean, described[k].mean, (drawn[k].mean - described[k].mean) / error);
+                    test_fail(__FILE__, __LINE__, "%s, set %d, moment %d: drawn %g, described %g, z = %.1f", m->name,
+                              set, k, drawn[k].mean, described[k].mean, (drawn[k].mean - described[k].mean) / error);
             }
         }
     }
@@ -298,7 +309,8 @@ TEST(bsdf_sampler_sends_light_where_f_says)
 /* f_pdf gives the bits of f and of pdf; both are pure functions; a sample tells the f and pdf of its direction. */
 TEST(bsdf_functions_agree_with_each_other)
 {
-    FOR_EACH_MODEL(m) {
+    FOR_EACH_MODEL(m)
+    {
         struct sr_rng rng = sr_rng_seed(15, 1);
         for (int set = 0; set < 64; ++set) {
             struct sr_bsdf b = draw(m, &rng, 0.3f);
@@ -322,7 +334,8 @@ TEST(bsdf_functions_agree_with_each_other)
                 EXPECT((s.lobe & ~sr_bsdf_lobes(&b)) == 0);
                 EXPECT(!!(s.lobe & SR_LOBE_TRANSMISSION) == !sr_same_hemisphere(wo, s.wi));
                 EXPECT(s.pdf > 0 && s.pdf < INFINITY && sr_spectrum_is_finite(s.f));
-                if ((s.lobe & SR_LOBE_SPECULAR) || s.pdf_is_proportional || sharp || fabsf(s.wi.z) < 1e-2f || fabsf(wo.z) < 1e-2f)
+                if ((s.lobe & SR_LOBE_SPECULAR) || s.pdf_is_proportional || sharp || fabsf(s.wi.z) < 1e-2f ||
+                    fabsf(wo.z) < 1e-2f)
                     continue;
                 f = sr_bsdf_f_pdf(&b, wo, s.wi, mode, &pdf);
                 EXPECT_RELATIVE(pdf, s.pdf, 5e-3);
@@ -337,7 +350,8 @@ TEST(bsdf_functions_agree_with_each_other)
 TEST(bsdf_stays_finite_where_directions_degenerate)
 {
     const float tiny[] = {0, 1e-20f, 1e-8f, 1e-4f, 0.3f, 1};
-    FOR_EACH_MODEL(m) {
+    FOR_EACH_MODEL(m)
+    {
         struct sr_rng rng = sr_rng_seed(16, 1);
         for (int set = 0; set < 64; ++set) {
             struct sr_bsdf b = draw(m, &rng, 0.5f);
@@ -355,25 +369,31 @@ TEST(bsdf_stays_finite_where_directions_degenerate)
             w[13] = (sr_vec3){-0.6f, 0, -0.8f};
             for (int i = 0; i < 14; ++i)
                 for (int j = 0; j < 28; ++j) {
-                    sr_vec3 wi = j < 14 ? w[j] : j == 14 ? sr_neg(w[i]) : (sr_vec3){-w[j - 14].x, w[j - 14].y, w[j - 14].z};
+                    sr_vec3 wi = j < 14    ? w[j]
+                                 : j == 14 ? sr_neg(w[i])
+                                           : (sr_vec3){-w[j - 14].x, w[j - 14].y, w[j - 14].z};
                     float pdf;
                     sr_spectrum f = sr_bsdf_f_pdf(&b, w[i], wi, SR_RADIANCE, &pdf);
                     struct sr_bsdf_sample s;
                     float u = j == 0 ? 0 : j == 1 ? SR_ONE_MINUS_EPSILON : uniform(&rng);
-                    sr_vec2 v = j < 2 ? (sr_vec2){u, u} : j == 2 ? (sr_vec2){0, SR_ONE_MINUS_EPSILON} : j == 3 ? (sr_vec2){SR_ONE_MINUS_EPSILON, 0} : square(&rng);
+                    sr_vec2 v = j < 2    ? (sr_vec2){u, u}
+                                : j == 2 ? (sr_vec2){0, SR_ONE_MINUS_EPSILON}
+                                : j == 3 ? (sr_vec2){SR_ONE_MINUS_EPSILON, 0}
+                                         : square(&rng);
                     bool ok = pdf >= 0 && pdf < INFINITY;
                     for (int k = 0; k < SR_LAMBDA_COUNT; ++k)
                         ok &= f[k] >= 0 && f[k] < INFINITY;
                     if (!ok)
-                        test_fail(__FILE__, __LINE__, "%s, set %d: wo %g %g %g wi %g %g %g: f %g pdf %g", m->name, set, (double)w[i].x,
-                                  (double)w[i].y, (double)w[i].z, (double)wi.x, (double)wi.y, (double)wi.z, (double)f[0], (double)pdf);
+                        test_fail(__FILE__, __LINE__, "%s, set %d: wo %g %g %g wi %g %g %g: f %g pdf %g", m->name, set,
+                                  (double)w[i].x, (double)w[i].y, (double)w[i].z, (double)wi.x, (double)wi.y,
+                                  (double)wi.z, (double)f[0], (double)pdf);
                     if (sr_bsdf_sample(&b, w[i], u, v, SR_RADIANCE, &s)) {
                         ok = s.pdf > 0 && s.pdf < INFINITY && sr_is_finite(s.wi);
                         for (int k = 0; k < SR_LAMBDA_COUNT; ++k)
                             ok &= s.f[k] >= 0 && s.f[k] < INFINITY;
                         if (!ok)
-                            test_fail(__FILE__, __LINE__, "%s, set %d: sample at wo.z %g: f %g pdf %g", m->name, set, (double)w[i].z,
-                                      (double)s.f[0], (double)s.pdf);
+                            test_fail(__FILE__, __LINE__, "%s, set %d: sample at wo.z %g: f %g pdf %g", m->name, set,
+                                      (double)w[i].z, (double)s.f[0], (double)s.pdf);
                     }
                 }
         }

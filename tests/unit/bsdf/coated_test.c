@@ -10,8 +10,12 @@ static sr_vec3 direction(double theta_deg, double phi_deg)
 }
 static struct sr_bsdf_coated lacquer(float rho, float alpha, float eta, float thickness, int max_depth)
 {
-    return (struct sr_bsdf_coated){.base_reflectance = SR_BLACK + rho, .coat_ggx = {alpha, alpha}, .coat_eta = eta,
-                                   .thickness = thickness, .max_depth = max_depth, .sample_count = 1};
+    return (struct sr_bsdf_coated){.base_reflectance = SR_BLACK + rho,
+                                   .coat_ggx = {alpha, alpha},
+                                   .coat_eta = eta,
+                                   .thickness = thickness,
+                                   .max_depth = max_depth,
+                                   .sample_count = 1};
 }
 static struct sr_bsdf bsdf_of(const struct sr_bsdf_model *model, struct sr_bsdf_coated c)
 {
@@ -49,7 +53,8 @@ TEST(inner_reflectance_of_a_clear_coat_is_walshs)
         struct sr_bsdf one = bsdf_of(&sr_bsdf_coated_diffuse, lacquer(0.8f, 0, eta[i], 0, 1));
         struct sr_bsdf two = bsdf_of(&sr_bsdf_coated_diffuse, lacquer(0.8f, 0, eta[i], 0, 3));
         sr_vec3 wo = direction(20, 0), wi = direction(30, 50);
-        double Fi = (sr_bsdf_f(&two, wo, wi, SR_RADIANCE)[0] / (double)sr_bsdf_f(&one, wo, wi, SR_RADIANCE)[0] - 1) / 0.8;
+        double Fi =
+            (sr_bsdf_f(&two, wo, wi, SR_RADIANCE)[0] / (double)sr_bsdf_f(&one, wo, wi, SR_RADIANCE)[0] - 1) / 0.8;
         EXPECT_NEAR(Fi, sr_fresnel_diffuse(1 / (double)eta[i]), 3e-6);
     }
 }
@@ -62,7 +67,8 @@ TEST(inner_reflectance_of_a_tinted_coat_is_the_integral)
             struct sr_bsdf one = bsdf_of(&sr_bsdf_coated_diffuse, lacquer(1, 0, eta[i], depth[j], 1));
             struct sr_bsdf two = bsdf_of(&sr_bsdf_coated_diffuse, lacquer(1, 0, eta[i], depth[j], 3));
             sr_vec3 wo = direction(20, 0), wi = direction(30, 50);
-            double Fi = sr_bsdf_f(&two, wo, wi, SR_RADIANCE)[0] / (double)sr_bsdf_f(&one, wo, wi, SR_RADIANCE)[0] - 1, sum = 0;
+            double Fi = sr_bsdf_f(&two, wo, wi, SR_RADIANCE)[0] / (double)sr_bsdf_f(&one, wo, wi, SR_RADIANCE)[0] - 1,
+                   sum = 0;
             int n = 20000;
             for (int k = 0; k < n; ++k) {
                 double c = (k + 0.5) / n;
@@ -89,7 +95,11 @@ TEST(closed_form_of_a_smooth_coat_is_the_mean_of_walks)
     static const struct {
         float rho, eta, thickness;
         int max_depth;
-    } rows[] = {{0.9f, 1.5f, 0.01f, 10}, {0.5f, 1.8f, 0.3f, 4}, {0.9f, 0.8f, 0.1f, 10}, {1, 2.5f, 0.02f, 7}, {0.7f, 1.33f, 1, 1}};
+    } rows[] = {{0.9f, 1.5f, 0.01f, 10},
+                {0.5f, 1.8f, 0.3f, 4},
+                {0.9f, 0.8f, 0.1f, 10},
+                {1, 2.5f, 0.02f, 7},
+                {0.7f, 1.33f, 1, 1}};
     for (int i = 0; i < 5; ++i) {
         struct sr_bsdf_coated c = lacquer(rows[i].rho, 0, rows[i].eta, rows[i].thickness, rows[i].max_depth);
         sr_vec3 wo = direction(35, 0), wi = direction(25, 110);
@@ -104,10 +114,14 @@ TEST(fast_product_of_a_rough_coat_has_the_mean_of_walks)
     static const struct {
         float rho, alpha, eta, thickness;
         int max_depth;
-    } rows[] = {{0.9f, 0.3f, 1.5f, 0.01f, 10}, {1, 0.1f, 2, 0.1f, 6}, {0.6f, 0.8f, 1.3f, 0.2f, 20}, {0.8f, 0.4f, 0.8f, 0.05f, 5}};
+    } rows[] = {{0.9f, 0.3f, 1.5f, 0.01f, 10},
+                {1, 0.1f, 2, 0.1f, 6},
+                {0.6f, 0.8f, 1.3f, 0.2f, 20},
+                {0.8f, 0.4f, 0.8f, 0.05f, 5}};
     for (int i = 0; i < 4; ++i)
         for (int grazing = 0; grazing < 2; ++grazing) {
-            struct sr_bsdf_coated c = lacquer(rows[i].rho, rows[i].alpha, rows[i].eta, rows[i].thickness, rows[i].max_depth);
+            struct sr_bsdf_coated c =
+                lacquer(rows[i].rho, rows[i].alpha, rows[i].eta, rows[i].thickness, rows[i].max_depth);
             sr_vec3 wo = direction(grazing ? 75 : 35, 0), wi = direction(45, 110);
             struct sr_tally fast = mean_f(c, &sr_bsdf_coated_diffuse, wo, wi, 100000);
             c.albedo = SR_BLACK + 1e-30f;
@@ -134,7 +148,8 @@ TEST(weights_of_pbrt_do_not_sum_to_one)
 /* Both smooth, nothing between: a mirror with the series F + T^2 Fc / (1 - F Fc), each crossing of the metal's light. */
 TEST(mirror_under_glass_is_a_series_of_bounces)
 {
-    struct sr_bsdf_coated c = {.base_eta = SR_BLACK + 0.3f, .base_k = SR_BLACK + 2, .coat_eta = 1.5f, .max_depth = 100, .sample_count = 1};
+    struct sr_bsdf_coated c = {
+        .base_eta = SR_BLACK + 0.3f, .base_k = SR_BLACK + 2, .coat_eta = 1.5f, .max_depth = 100, .sample_count = 1};
     struct sr_bsdf b = bsdf_of(&sr_bsdf_coated_conductor, c);
     EXPECT_EQUAL_INT(sr_bsdf_lobes(&b), SR_LOBE_REFLECTION | SR_LOBE_SPECULAR);
     sr_vec3 wo = direction(50, 0);
@@ -142,7 +157,8 @@ TEST(mirror_under_glass_is_a_series_of_bounces)
     struct sr_tally E = {0};
     for (int i = 0; i < 50000; ++i) {
         struct sr_bsdf_sample s;
-        if (sr_bsdf_sample(&b, wo, sr_rng_float(&rng), (sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)}, SR_RADIANCE, &s)) {
+        if (sr_bsdf_sample(&b, wo, sr_rng_float(&rng), (sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)}, SR_RADIANCE,
+                           &s)) {
             EXPECT(s.lobe & SR_LOBE_SPECULAR);
             EXPECT_NEAR(s.wi.x, -wo.x, 1e-5);
             sr_tally_add(&E, (double)(s.f[0] * s.wi.z / s.pdf));
@@ -161,11 +177,13 @@ TEST(coat_of_index_one_is_no_coat)
     c.base_eta = SR_BLACK + 0.2f;
     c.base_k = SR_BLACK + 3;
     c.base_ggx = (struct sr_ggx){0.3f, 0.5f};
-    struct sr_bsdf coated = bsdf_of(&sr_bsdf_coated_conductor, c), matte = bsdf_of(&sr_bsdf_coated_diffuse, c), bare = {.model = &sr_bsdf_conductor};
+    struct sr_bsdf coated = bsdf_of(&sr_bsdf_coated_conductor, c), matte = bsdf_of(&sr_bsdf_coated_diffuse, c),
+                   bare = {.model = &sr_bsdf_conductor};
     struct sr_bsdf_conductor metal = {c.base_eta, c.base_k, c.base_ggx};
     memcpy(bare.data, &metal, sizeof metal);
     sr_vec3 wo = direction(35, 0), wi = direction(45, 170);
     EXPECT_RELATIVE(sr_bsdf_f(&coated, wo, wi, SR_RADIANCE)[0], sr_bsdf_f(&bare, wo, wi, SR_RADIANCE)[0], 1e-5);
     EXPECT_RELATIVE(sr_bsdf_f(&matte, wo, wi, SR_RADIANCE)[0], 0.7 / 3.14159265, 1e-5);
-    EXPECT_RELATIVE(sr_bsdf_f(&coated, sr_neg(wo), sr_neg(wi), SR_RADIANCE)[0], sr_bsdf_f(&bare, wo, wi, SR_RADIANCE)[0], 1e-5);
+    EXPECT_RELATIVE(sr_bsdf_f(&coated, sr_neg(wo), sr_neg(wi), SR_RADIANCE)[0],
+                    sr_bsdf_f(&bare, wo, wi, SR_RADIANCE)[0], 1e-5);
 }

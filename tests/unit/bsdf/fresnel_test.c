@@ -85,7 +85,8 @@ TEST(fresnel_conductor_agrees_with_complex_arithmetic)
 TEST(fresnel_conductor_without_absorption_is_a_dielectric)
 {
     for (int i = 1; i <= 50; ++i)
-        EXPECT_NEAR(sr_fresnel_conductor((float)i / 50, SR_BLACK + 1.6f, SR_BLACK)[0], sr_fresnel_dielectric((float)i / 50, 1.6f), 2e-6);
+        EXPECT_NEAR(sr_fresnel_conductor((float)i / 50, SR_BLACK + 1.6f, SR_BLACK)[0],
+                    sr_fresnel_dielectric((float)i / 50, 1.6f), 2e-6);
 }
 
 /* 2 INTEGRAL_0^1 F(c) c dc against Walsh's closed form, in both directions through the boundary. */

@@ -120,7 +120,8 @@ TEST(rough_glass_reflects_and_transmits_what_quadrature_in_double_says)
             double a = k * 0.8191725133961645, b = k * 0.6710436067037893, c = k * 0.5497004779019703;
             struct sr_bsdf_sample s;
             if (sr_bsdf_sample(&q.bsdf, q.wo, (float)(a - floor(a)) * SR_ONE_MINUS_EPSILON,
-                               (sr_vec2){(float)(b - floor(b)) * SR_ONE_MINUS_EPSILON, (float)(c - floor(c)) * SR_ONE_MINUS_EPSILON},
+                               (sr_vec2){(float)(b - floor(b)) * SR_ONE_MINUS_EPSILON,
+                                         (float)(c - floor(c)) * SR_ONE_MINUS_EPSILON},
                                SR_IMPORTANCE, &s))
                 share[!!(s.lobe & SR_LOBE_TRANSMISSION)] += (double)(s.f[0] * fabsf(s.wi.z) / s.pdf) / n;
         }
