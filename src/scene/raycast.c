@@ -8,7 +8,9 @@
 static void fill_ray(struct RTCRay *r, sr_vec3 o, sr_vec3 d, float time, float t_max)
 {
     typedef float f4 __attribute__((vector_size(16)));
-    *(f4 *)&r->org_x = (f4){o.x, o.y, o.z, 0};    // org, tnear
+    // a plane through a coordinate's zero has no rounding error there, so that rays start on it exactly: 0 is no meeting
+    const float nearest = 1e-20f; // [m]
+    *(f4 *)&r->org_x = (f4){o.x, o.y, o.z, nearest}; // org, tnear
     *(f4 *)&r->dir_x = (f4){d.x, d.y, d.z, time}; // dir, time
     r->tfar = t_max;
     r->mask = ~0u;

@@ -32,9 +32,8 @@ static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, s
     if (!m) {
         const char *names[40];
         size_t n = 0;
-        for (; sr_material_models[n] && n < 39; ++n)
+        for (; sr_material_models[n] && n < 40; ++n)
             names[n] = sr_material_models[n]->name;
-        names[n++] = "interface";
         return sr_pbrt_unsupported(b, e, names, n);
     }
     struct sr_material *material = sr_arena_alloc(b->arena, sizeof *material);
