@@ -25,7 +25,7 @@ static inline struct sr_rgb sr_light_texel(const struct sr_texels *t, uint32_t x
     size_t g = t->channels >= 3 ? 1 : 0, b = t->channels >= 3 ? 2 : 0;
     struct sr_rgb c = t->bytes ? (struct sr_rgb){t->decode[t->bytes[i]], t->decode[t->bytes[i + g]], t->decode[t->bytes[i + b]]}
                                : (struct sr_rgb){t->floats[i], t->floats[i + g], t->floats[i + b]};
-    return (struct sr_rgb){fmaxf(c.r, 0), fmaxf(c.g, 0), fmaxf(c.b, 0)};
+    return (struct sr_rgb){c.r > 0 ? c.r : 0, c.g > 0 ? c.g : 0, c.b > 0 ? c.b : 0};
 }
 
 /* For lights that no ray meets. */

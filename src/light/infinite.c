@@ -146,7 +146,7 @@ static sr_vec2 square(const struct infinite *m, sr_vec3 wi, float *jacobian)
 static uint32_t texel_index(float u, uint32_t n)
 {
     float i = u * (float)n;
-    return i > 0 ? (uint32_t)fminf(i, (float)(n - 1)) : 0;
+    return i > 0 ? (i < (float)n ? (uint32_t)i : n - 1) : 0;
 }
 
 static sr_spectrum image_Le(const struct infinite *m, sr_vec2 p, const struct sr_wavelengths *w)

@@ -108,21 +108,25 @@ static inline v8 importance(const struct sr_light_tree_node *b, sr_vec3 p, sr_ve
     return select(can_reach, weight, zero);
 }
 
-// the sums of a binary tree over the eight weights: the order of additions is the same for pick and pmf
+// sums[k]: of the weights up to and with child k; in double, so that what a child gets is what its probability says
 struct sums {
-    float one[8], two[4], four[2], all;
+    double one[WIDTH], upto[WIDTH];
 };
 
 static inline struct sums add_up(v8 w)
 {
     struct sums s;
-    for (int i = 0; i < 8; ++i)
-        s.one[i] = w[i];
-    for (int i = 0; i < 4; ++i)
-        s.two[i] = s.one[2 * i] + s.one[2 * i + 1];
-    s.four[0] = s.two[0] + s.two[1];
-    s.four[1] = s.two[2] + s.two[3];
-    s.all = s.four[0] + s.four[1];
+    for (int i = 0; i < WIDTH; ++i)
+        s.one[i] = (double)w[i];
+    double two = s.one[0] + s.one[1], four = two + (s.one[2] + s.one[3]), six = four + (s.one[4] + s.one[5]);
+    s.upto[0] = s.one[0];
+    s.upto[1] = two;
+    s.upto[2] = two + s.one[2];
+    s.upto[3] = four;
+    s.upto[4] = four + s.one[4];
+    s.upto[5] = six;
+    s.upto[6] = six + s.one[6];
+    s.upto[7] = six + (s.one[6] + s.one[7]);
     return s;
 }
 
@@ -139,23 +143,17 @@ bool sr_light_tree_pick(const struct sr_light_tree *tree, sr_vec3 p, sr_vec3 ns,
     do {
         const struct sr_light_tree_node *node = &tree->nodes[at];
         struct sums s = add_up(importance(node, p, ns, has_normal));
-        if (!(s.all > 0))
+        double all = s.upto[WIDTH - 1], t = u * all;
+        if (!(all > 0))
             return false;
-        // down the sums without branches: which half, which quarter, which one
-        double t = u * (double)s.all;
-        unsigned half = t >= (double)s.four[0];
-        t -= half * (double)s.four[0];
-        unsigned i = 2 * half, is_second = t >= (double)s.two[i];
-        t -= is_second * (double)s.two[i];
-        i = 2 * (i + is_second);
-        is_second = t >= (double)s.one[i];
-        t -= is_second * (double)s.one[i];
-        i += is_second;
-        while (SR_UNLIKELY(!(s.one[i] > 0))) // rounding led past the last of its half
-            i = (i + 7) % 8;
-        u = t / (double)s.one[i];
+        unsigned i = 0; // counted, since branches would be mispredicted
+        for (int k = 0; k < WIDTH - 1; ++k)
+            i += t >= s.upto[k];
+        while (SR_UNLIKELY(!(s.one[i] > 0))) // rounding led past the last
+            --i;
+        u = (t - (s.upto[i] - s.one[i])) / s.one[i];
         u = u < 0 ? 0 : u < 0x1.fffffffffffffp-1 ? u : 0x1.fffffffffffffp-1;
-        probability *= s.one[i] / s.all;
+        probability *= (float)(s.one[i] / all);
         at = node->child[i];
     } while (!(at & SR_LIGHT_TREE_LEAF));
     *index = at & ~SR_LIGHT_TREE_LEAF;
@@ -172,7 +170,7 @@ float sr_light_tree_pmf(const struct sr_light_tree *tree, sr_vec3 p, sr_vec3 ns,
         struct sums s = add_up(importance(node, p, ns, has_normal));
         if (!(s.one[place % WIDTH] > 0))
             return 0;
-        probability *= s.one[place % WIDTH] / s.all;
+        probability *= (float)(s.one[place % WIDTH] / s.upto[WIDTH - 1]);
         place = node->parent;
     }
     return probability;

@@ -12,12 +12,16 @@
 #define WIDTH SR_LIGHT_TREE_WIDTH
 #define BINS 12
 
+typedef float v4 __attribute__((vector_size(16)));
+typedef int32_t v4i __attribute__((vector_size(16)));
+
+// a light, or bounds of several, so packed that joining two is a minimum, a maximum and a sum
 struct item {
-    struct sr_box box;
-    sr_vec3 axis;
-    float cos_o, cos_e;
-    float power; // of one side; negative: two sides glow
+    v4 lo;  // [m] of the box; cos_o
+    v4 hi;  // [m] of the box; -cos_e
+    v4 sum; // axis; power of one side [cd sr]
     uint32_t light;
+    bool is_two_sided;
 };
 
 struct range {
@@ -32,57 +36,64 @@ struct build {
     bool has_memory;
 };
 
-// a part of the lights while a split is sought
+// a part of the lights while a split is sought: sum holds the sum of axes
 struct part {
-    struct sr_box box;
-    sr_vec3 axes;
-    float cos_o, cos_e, power;
+    v4 lo, hi, sum;
     uint32_t count;
 };
 
-static sr_vec3 centre_of(const struct item *i)
+static inline v4 smaller(v4 a, v4 b)
 {
-    return sr_scale(0.5f, sr_add(i->box.lo, i->box.hi));
+    v4i mask = a < b;
+    return (v4)((mask & (v4i)a) | (~mask & (v4i)b));
 }
 
-static struct sr_box grow(struct sr_box a, struct sr_box b)
+static inline v4 larger(v4 a, v4 b)
 {
-    return (struct sr_box){{fminf(a.lo.x, b.lo.x), fminf(a.lo.y, b.lo.y), fminf(a.lo.z, b.lo.z)},
-                           {fmaxf(a.hi.x, b.hi.x), fmaxf(a.hi.y, b.hi.y), fmaxf(a.hi.z, b.hi.z)}};
+    v4i mask = a > b;
+    return (v4)((mask & (v4i)a) | (~mask & (v4i)b));
+}
+
+static inline sr_vec3 vec3(v4 a)
+{
+    return (sr_vec3){a[0], a[1], a[2]};
+}
+
+static inline v4 centre_of(const struct item *i)
+{
+    return 0.5f * (i->lo + i->hi);
 }
 
 static struct part empty_part(void)
 {
-    return (struct part){.box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}}, .cos_o = 1, .cos_e = 1};
+    return (struct part){.lo = {INFINITY, INFINITY, INFINITY, 1}, .hi = {-INFINITY, -INFINITY, -INFINITY, -1}};
 }
 
-static void join(struct part *a, const struct part *b)
+static inline void join(struct part *a, v4 lo, v4 hi, v4 sum, uint32_t count)
 {
-    a->box = grow(a->box, b->box);
-    a->axes = sr_add(a->axes, b->axes);
-    a->cos_o = fminf(a->cos_o, b->cos_o);
-    a->cos_e = fminf(a->cos_e, b->cos_e);
-    a->power += b->power;
-    a->count += b->count;
+    a->lo = smaller(a->lo, lo);
+    a->hi = larger(a->hi, hi);
+    a->sum += sum;
+    a->count += count;
 }
 
-static struct part part_of(const struct item *i)
+// two-sided ones count with whichever side is up, so that opposite normals agree
+static inline v4 upward(const struct item *i)
 {
-    // two-sided ones count with whichever side is up, so that opposite normals agree
-    bool is_turned = i->power < 0 && (i->axis.z < 0 || (i->axis.z == 0 && (i->axis.y < 0 || (i->axis.y == 0 && i->axis.x < 0))));
-    return (struct part){i->box, is_turned ? sr_neg(i->axis) : i->axis, i->cos_o, i->cos_e, fabsf(i->power), 1};
+    bool is_turned = i->is_two_sided && (i->sum[2] < 0 || (i->sum[2] == 0 && (i->sum[1] < 0 || (i->sum[1] == 0 && i->sum[0] < 0))));
+    return is_turned ? i->sum * (v4){-1, -1, -1, 1} : i->sum;
 }
 
 static float cost_of(const struct part *a)
 {
     // axes spread evenly over a cap have the mean (1 + cos) / 2; the widest of their own cones comes on top
-    float mean = fminf(sr_length(a->axes) / (float)a->count, 1);
-    float cos_cap = fmaxf(2 * mean - 1, -1), sin_cap = sr_safe_sqrt(1 - cos_cap * cos_cap);
-    float sin_o = sr_safe_sqrt(1 - a->cos_o * a->cos_o);
-    bool is_all = sin_cap * a->cos_o + cos_cap * sin_o < 0;
-    float cos_o = is_all ? -1 : cos_cap * a->cos_o - sin_cap * sin_o;
-    float spread = 2 * SR_PI * (1 - cos_o) + SR_PI * (1 - a->cos_e);
-    return a->power * spread * sr_length2(sr_sub(a->box.hi, a->box.lo));
+    float length = sr_length(vec3(a->sum)) / (float)a->count, mean = length < 1 ? length : 1;
+    float cos_cap = 2 * mean - 1, sin_cap = sr_safe_sqrt(1 - cos_cap * cos_cap);
+    float widest = a->lo[3], sin_o = sr_safe_sqrt(1 - widest * widest);
+    bool is_all = sin_cap * widest + cos_cap * sin_o < 0;
+    float cos_o = is_all ? -1 : cos_cap * widest - sin_cap * sin_o;
+    float spread = 2 * SR_PI * (1 - cos_o) + SR_PI * (1 + a->hi[3]);
+    return a->sum[3] * spread * sr_length2(vec3(a->hi - a->lo));
 }
 
 static int bin_of(float x, float lo, float scale)
@@ -95,27 +106,26 @@ static int bin_of(float x, float lo, float scale)
 static uint32_t split(struct build *b, struct range range)
 {
     struct item *items = b->items;
-    struct sr_box centres = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    for (uint32_t i = range.begin; i < range.end; ++i) {
-        sr_vec3 c = centre_of(&items[i]);
-        centres = grow(centres, (struct sr_box){c, c});
+    v4 lo = centre_of(&items[range.begin]), hi = lo;
+    for (uint32_t i = range.begin + 1; i < range.end; ++i) {
+        v4 c = centre_of(&items[i]);
+        lo = smaller(lo, c);
+        hi = larger(hi, c);
     }
-    sr_vec3 extent = sr_sub(centres.hi, centres.lo);
-    float largest = sr_max_component(extent), best_cost = INFINITY, best_limit = 0;
-    int best_axis = -1;
+    v4 extent = hi - lo;
+    float largest = sr_max_component(vec3(extent)), best_cost = INFINITY;
+    int best_axis = -1, best_limit = 0;
     struct part bins[3][BINS];
     float scale[3];
     for (int a = 0; a < 3; ++a) {
-        scale[a] = sr_component(extent, a) > 1e-6f * largest ? (float)BINS / sr_component(extent, a) : 0;
+        scale[a] = extent[a] > 1e-6f * largest ? (float)BINS / extent[a] : 0;
         for (int k = 0; k < BINS; ++k)
             bins[a][k] = empty_part();
     }
     for (uint32_t i = range.begin; largest > 0 && i < range.end; ++i) {
-        struct part one = part_of(&items[i]);
-        sr_vec3 c = centre_of(&items[i]);
+        v4 up = upward(&items[i]), c = centre_of(&items[i]);
         for (int a = 0; a < 3; ++a)
-            if (scale[a] > 0)
-                join(&bins[a][bin_of(sr_component(c, a), sr_component(centres.lo, a), scale[a])], &one);
+            join(&bins[a][bin_of(c[a], lo[a], scale[a])], items[i].lo, items[i].hi, up, 1);
     }
     for (int a = 0; a < 3; ++a) {
         if (!(scale[a] > 0))
@@ -123,17 +133,23 @@ static uint32_t split(struct build *b, struct range range)
         float below[BINS];
         struct part sum = empty_part();
         for (int k = 0; k < BINS - 1; ++k) {
-            join(&sum, &bins[a][k]);
-            below[k] = sum.count ? cost_of(&sum) : NAN;
+            const struct part *bin = &bins[a][k];
+            join(&sum, bin->lo, bin->hi, bin->sum, bin->count);
+            below[k] = bin->count || k == 0 ? (sum.count ? cost_of(&sum) : NAN) : below[k - 1];
         }
         sum = empty_part();
+        float above = NAN;
         for (int k = BINS - 1; k > 0; --k) {
-            join(&sum, &bins[a][k]);
-            float cost = sum.count ? (below[k - 1] + cost_of(&sum)) * (largest / sr_component(extent, a)) : NAN;
+            const struct part *bin = &bins[a][k];
+            if (bin->count) {
+                join(&sum, bin->lo, bin->hi, bin->sum, bin->count);
+                above = cost_of(&sum);
+            }
+            float cost = (below[k - 1] + above) * (largest / extent[a]);
             if (cost < best_cost) {
                 best_cost = cost;
                 best_axis = a;
-                best_limit = (float)k;
+                best_limit = k;
             }
         }
     }
@@ -142,8 +158,7 @@ static uint32_t split(struct build *b, struct range range)
         return middle;
     uint32_t i = range.begin, j = range.end;
     while (i < j) {
-        int k = bin_of(sr_component(centre_of(&items[i]), best_axis), sr_component(centres.lo, best_axis), scale[best_axis]);
-        if ((float)k < best_limit) {
+        if (bin_of(centre_of(&items[i])[best_axis], lo[best_axis], scale[best_axis]) < best_limit) {
             ++i;
         } else {
             struct item t = items[i];
@@ -191,28 +206,28 @@ static int ranges_of(struct build *b, struct range all, struct range *ranges)
 // the bounds of all the children, no smaller than any
 static struct item enclose(const struct item *children, int n)
 {
-    struct item all = {.box = children[0].box, .cos_e = 1};
+    struct item all = children[0];
     sr_vec3 sum = {0, 0, 0}, axes[WIDTH];
-    bool is_two_sided = false;
+    float power = 0, widest = 0;
     for (int i = 0; i < n; ++i)
-        is_two_sided |= children[i].power < 0;
+        all.is_two_sided |= children[i].is_two_sided;
     for (int i = 0; i < n; ++i) {
-        all.box = grow(all.box, children[i].box);
-        all.cos_e = fminf(all.cos_e, children[i].cos_e);
-        all.power += fabsf(children[i].power);
-        axes[i] = children[i].axis;
-        if (is_two_sided && sr_dot(axes[i], sum) < 0)
+        all.lo = smaller(all.lo, children[i].lo);
+        all.hi = larger(all.hi, children[i].hi);
+        power += children[i].sum[3];
+        axes[i] = vec3(children[i].sum);
+        if (all.is_two_sided && sr_dot(axes[i], sum) < 0)
             axes[i] = sr_neg(axes[i]);
         sum = sr_add(sum, axes[i]);
     }
     float length = sr_length(sum);
-    all.axis = length > 1e-3f ? sr_scale(1 / length, sum) : axes[0];
-    float widest = 0;
-    for (int i = 0; i < n; ++i)
-        widest = fmaxf(widest, sr_angle_between(all.axis, axes[i]) + acosf(sr_clamp(children[i].cos_o, -1, 1)) + 1e-4f);
-    all.cos_o = widest < SR_PI ? cosf(widest) : -1;
-    if (is_two_sided)
-        all.power = -all.power;
+    sr_vec3 axis = length > 1e-3f ? sr_scale(1 / length, sum) : axes[0];
+    for (int i = 0; i < n; ++i) {
+        float angle = sr_angle_between(axis, axes[i]) + acosf(sr_clamp(children[i].lo[3], -1, 1)) + 1e-4f;
+        widest = angle > widest ? angle : widest;
+    }
+    all.lo[3] = widest < SR_PI ? cosf(widest) : -1;
+    all.sum = (v4){axis.x, axis.y, axis.z, power};
     return all;
 }
 
@@ -223,24 +238,22 @@ static int16_t round_down(float cosine)
 
 static void store(const struct build *b, struct sr_light_tree_node *node, int slot, const struct item *child)
 {
-    sr_vec3 c = centre_of(child);
-    const float at[3] = {c.x - node->origin.x, c.y - node->origin.y, c.z - node->origin.z};
-    const float axis[3] = {child->axis.x, child->axis.y, child->axis.z};
+    v4 at = centre_of(child) - (v4){node->origin.x, node->origin.y, node->origin.z, 0};
     double off2 = 0, dot = 0, length2 = 0;
     for (int a = 0; a < 3; ++a) {
-        node->centre[a][slot] = (uint16_t)(node->step > 0 ? sr_clamp(roundf(at[a] / node->step), 0, 65535) : 0);
-        node->axis[a][slot] = (int16_t)lrintf(axis[a] * 32767);
+        node->centre[a][slot] = (uint16_t)(node->step > 0 ? sr_clamp(at[a] / node->step + 0.5f, 0, 65535) : 0);
+        node->axis[a][slot] = (int16_t)lrintf(child->sum[a] * 32767);
         double off = (double)node->centre[a][slot] * (double)node->step - (double)at[a], q = node->axis[a][slot];
         off2 += off * off;
-        dot += q * (double)axis[a];
+        dot += q * (double)child->sum[a];
         length2 += q * q;
     }
-    node->radius[slot] = (float)((sqrt(off2) + (double)sr_length(sr_sub(child->box.hi, child->box.lo)) / 2) * (1 + 1e-6)) + b->slop;
+    node->radius[slot] = (float)((sqrt(off2) + (double)sr_length(vec3(child->hi - child->lo)) / 2) * (1 + 1e-6)) + b->slop;
     double turned = length2 > 0 ? acos(fmin(dot / sqrt(length2), 1)) : 0;
-    double widest = acos(sr_clamp(child->cos_o, -1, 1)) + turned;
+    double widest = acos((double)sr_clamp(child->lo[3], -1, 1)) + turned;
     node->cos_o[slot] = widest < (double)SR_PI ? round_down((float)cos(widest)) : -32767;
-    node->cos_e[slot] = round_down(child->cos_e);
-    node->power[slot] = child->power;
+    node->cos_e[slot] = round_down(-child->hi[3]);
+    node->power[slot] = child->is_two_sided ? -child->sum[3] : child->sum[3];
 }
 
 static struct item build_node(struct build *b, struct range all, uint32_t parent)
@@ -254,7 +267,7 @@ static struct item build_node(struct build *b, struct range all, uint32_t parent
     struct item children[WIDTH];
     uint32_t links[WIDTH];
     int n = ranges_of(b, all, ranges);
-    struct sr_box centres = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    v4 lo = {INFINITY, INFINITY, INFINITY, 0}, hi = -lo;
     for (int i = 0; i < n; ++i) {
         uint32_t place = self * WIDTH + (uint32_t)i;
         children[i] = b->items[ranges[i].begin];
@@ -265,13 +278,13 @@ static struct item build_node(struct build *b, struct range all, uint32_t parent
             links[i] = (uint32_t)b->nodes.count;
             children[i] = build_node(b, ranges[i], place);
         }
-        sr_vec3 c = centre_of(&children[i]);
-        centres = grow(centres, (struct sr_box){c, c});
+        lo = smaller(lo, centre_of(&children[i]));
+        hi = larger(hi, centre_of(&children[i]));
     }
     struct sr_light_tree_node *node = (struct sr_light_tree_node *)b->nodes.data + self;
     node->parent = parent;
-    node->origin = centres.lo;
-    node->step = sr_max_component(sr_sub(centres.hi, centres.lo)) / 65535;
+    node->origin = vec3(lo);
+    node->step = sr_max_component(vec3(hi - lo)) / 65535;
     for (int i = 0; i < n; ++i) {
         store(b, node, i, &children[i]);
         node->child[i] = links[i];
@@ -288,9 +301,10 @@ static uint32_t collect(struct build *b, const struct sr_light *lights, uint32_t
         struct sr_light_bounds l;
         if (lights[i].model->is_infinite || !lights[i].model->bounds(lights[i].self, &l) || !(l.power > 0))
             continue;
-        sr_vec3 lo = l.box.lo, hi = l.box.hi;
-        b->items[n++] = (struct item){l.box, l.axis, l.cos_theta_o, l.cos_theta_e, l.two_sided ? -l.power / 2 : l.power, i};
-        farthest = fmaxf(farthest, fmaxf(fmaxf(fabsf(lo.x), fabsf(hi.x)), fmaxf(fmaxf(fabsf(lo.y), fabsf(hi.y)), fmaxf(fabsf(lo.z), fabsf(hi.z)))));
+        v4 lo = {l.box.lo.x, l.box.lo.y, l.box.lo.z, l.cos_theta_o}, hi = {l.box.hi.x, l.box.hi.y, l.box.hi.z, -l.cos_theta_e};
+        b->items[n++] = (struct item){lo, hi, {l.axis.x, l.axis.y, l.axis.z, l.two_sided ? l.power / 2 : l.power}, i, l.two_sided};
+        for (int a = 0; a < 3; ++a)
+            farthest = fmaxf(farthest, fmaxf(fabsf(lo[a]), fabsf(hi[a])));
     }
     b->slop = farthest * 8 * SR_MACHINE_EPSILON;
     return n;
