@@ -15,16 +15,18 @@
 #include "shape/quadric.h"
 
 enum kind { GENERAL, PARALLELOGRAM, RECTANGLE, EMPTY };
-static const float small_extent2 = 0.015f;                   // (diagonal / distance)^2 below which area sampling is taken
+static const float small_extent2 = 0.015f; // (diagonal / distance)^2 below which area sampling is taken
 static const float min_solid_angle = 3e-4f, max_solid_angle = 6.22f; // [sr]
 
 #define B struct sr_shape_patches
 static const struct sr_param params[] = {
-    {SR_PARAM_INTS, "indices", "1", 0, INT32_MAX, NAN, offsetof(B, indices), "four vertices a patch, at (u,v) = (0,0) (1,0) (0,1) (1,1); 0 1 2 3 if there are but four P"},
+    {SR_PARAM_INTS, "indices", "1", 0, INT32_MAX, NAN, offsetof(B, indices),
+     "four vertices a patch, at (u,v) = (0,0) (1,0) (0,1) (1,1); 0 1 2 3 if there are but four P"},
     {SR_PARAM_POINT3S, "P", "m", -INFINITY, INFINITY, NAN, offsetof(B, P), "positions of the vertices"},
     {SR_PARAM_NORMAL3S, "N", "1", -INFINITY, INFINITY, NAN, offsetof(B, N), "shading normals; their side is outside"},
     {SR_PARAM_POINT2S, "uv", "1", -INFINITY, INFINITY, NAN, offsetof(B, uv), "texture coordinates"},
-    {SR_PARAM_INTS, "faceIndices", "1", 0, INT32_MAX, NAN, offsetof(B, face_indices), "number of the face that each patch came from"},
+    {SR_PARAM_INTS, "faceIndices", "1", 0, INT32_MAX, NAN, offsetof(B, face_indices),
+     "number of the face that each patch came from"},
     {0},
 };
 #undef B
@@ -51,7 +53,8 @@ static void weights(sr_vec2 h, float b[4])
 
 static sr_vec3 mix(const sr_vec3 v[4], const float b[4])
 {
-    return sr_add(sr_add(sr_scale(b[0], v[0]), sr_scale(b[1], v[1])), sr_add(sr_scale(b[2], v[2]), sr_scale(b[3], v[3])));
+    return sr_add(sr_add(sr_scale(b[0], v[0]), sr_scale(b[1], v[1])),
+                  sr_add(sr_scale(b[2], v[2]), sr_scale(b[3], v[3])));
 }
 
 /* Derivatives by u at v = t, and by v at u = t. */
@@ -75,7 +78,8 @@ static float area(const void *self, uint32_t primitive)
     enum { nodes = 12 };
     double x[nodes], w[nodes], sum = 0;
     sr_gauss_legendre(nodes, 0, 1, x, w);
-    sr_dvec3 e0 = sr_dvec(sr_sub(v[1], v[0])), e1 = sr_dvec(sr_sub(v[3], v[2])), f0 = sr_dvec(sr_sub(v[2], v[0])), f1 = sr_dvec(sr_sub(v[3], v[1]));
+    sr_dvec3 e0 = sr_dvec(sr_sub(v[1], v[0])), e1 = sr_dvec(sr_sub(v[3], v[2])), f0 = sr_dvec(sr_sub(v[2], v[0])),
+             f1 = sr_dvec(sr_sub(v[3], v[1]));
     for (int i = 0; i < nodes; ++i) {
         double a = x[i];
         sr_dvec3 f = {f0.x + a * (f1.x - f0.x), f0.y + a * (f1.y - f0.y), f0.z + a * (f1.z - f0.z)};
@@ -106,7 +110,8 @@ static enum kind classify(const sr_vec3 v[4])
     return fabsf(sr_dot(e, f)) <= 1e-6f * sr_length(e) * sr_length(f) ? RECTANGLE : PARALLELOGRAM;
 }
 
-static sr_status prepare(void *self, const struct sr_shape_placement *placement, struct sr_arena *arena, struct sr_error *error)
+static sr_status prepare(void *self, const struct sr_shape_placement *placement, struct sr_arena *arena,
+                         struct sr_error *error)
 {
     struct sr_shape_patches *m = self;
     const struct sr_mesh_arrays a = {"bilinearmesh", 4, &m->indices, &m->P, &m->N, NULL, &m->uv, &m->face_indices};
@@ -160,7 +165,8 @@ static int meet(const sr_vec3 vertex[4], sr_vec3 o, sr_vec3 direction, double sl
 {
     sr_dvec3 d = sr_dvec(direction), origin = sr_dvec(o);
     sr_dvec3 a = minus(sr_dvec(vertex[0]), origin), a1 = minus(sr_dvec(vertex[1]), origin);
-    sr_dvec3 e = minus(a1, a), f = minus(sr_dvec(vertex[2]), sr_dvec(vertex[0])), f1 = minus(sr_dvec(vertex[3]), sr_dvec(vertex[1]));
+    sr_dvec3 e = minus(a1, a), f = minus(sr_dvec(vertex[2]), sr_dvec(vertex[0])),
+             f1 = minus(sr_dvec(vertex[3]), sr_dvec(vertex[1]));
     sr_dvec3 g = minus(f1, f);
     // (a + u e) . (d x (f + u g)) = 0
     sr_dvec3 df = cross(d, f), dg = cross(d, g);
@@ -178,7 +184,8 @@ static int meet(const sr_vec3 vertex[4], sr_vec3 o, sr_vec3 direction, double sl
         double u = us[i];
         if (!(u >= -slack && u <= 1 + slack))
             continue;
-        sr_dvec3 at = {a.x + u * e.x, a.y + u * e.y, a.z + u * e.z}, line = {f.x + u * g.x, f.y + u * g.y, f.z + u * g.z};
+        sr_dvec3 at = {a.x + u * e.x, a.y + u * e.y, a.z + u * e.z},
+                 line = {f.x + u * g.x, f.y + u * g.y, f.z + u * g.z};
         sr_dvec3 across = cross(d, line);
         double length2 = sr_ddot(across, across);
         if (!(length2 > 0))
@@ -191,7 +198,8 @@ static int meet(const sr_vec3 vertex[4], sr_vec3 o, sr_vec3 direction, double sl
     return found;
 }
 
-static bool intersect(const void *self, uint32_t primitive, sr_vec3 o, sr_vec3 d, float t_min, float t_max, float *t, sr_vec2 *hit)
+static bool intersect(const void *self, uint32_t primitive, sr_vec3 o, sr_vec3 d, float t_min, float t_max, float *t,
+                      sr_vec2 *hit)
 {
     sr_vec3 v[4];
     vertices(self, primitive, v);
@@ -230,7 +238,8 @@ static sr_vec2 uv(const void *self, uint32_t primitive, sr_vec2 hit)
                      b[0] * t[c[0]].y + b[1] * t[c[1]].y + b[2] * t[c[2]].y + b[3] * t[c[3]].y};
 }
 
-static bool has_shading_normal(const struct sr_shape_patches *m, uint32_t primitive, const float b[4], sr_vec3 N[4], sr_vec3 *s)
+static bool has_shading_normal(const struct sr_shape_patches *m, uint32_t primitive, const float b[4], sr_vec3 N[4],
+                               sr_vec3 *s)
 {
     if (!m->N.count)
         return false;
@@ -323,7 +332,8 @@ static void point(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_p
 }
 
 /* Whether the patch is drawn by solid angle as seen from p, and with which density [1/sr]. The same in sample and pdf. */
-static bool by_solid_angle(const struct sr_shape_patches *m, uint32_t primitive, const sr_vec3 v[4], sr_vec3 p, float *pdf)
+static bool by_solid_angle(const struct sr_shape_patches *m, uint32_t primitive, const sr_vec3 v[4], sr_vec3 p,
+                           float *pdf)
 {
     if (m->kinds[primitive] != RECTANGLE)
         return false;
@@ -370,7 +380,8 @@ static float area_density(const struct sr_shape_patches *m, uint32_t primitive, 
     return sr_warp_bilinear_pdf(h, w) / stretch;
 }
 
-static bool sample(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec2 u, struct sr_shape_sample *s)
+static bool sample(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec2 u,
+                   struct sr_shape_sample *s)
 {
     const struct sr_shape_patches *m = self;
     if (m->kinds[primitive] == EMPTY)
@@ -406,7 +417,8 @@ static bool sample(const void *self, uint32_t primitive, const struct sr_point *
     return s->pdf > 0 && isfinite(s->pdf);
 }
 
-static float pdf(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there)
+static float pdf(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec3 wi,
+                 const struct sr_point *there)
 {
     (void)wi;
     const struct sr_shape_patches *m = self;
@@ -461,7 +473,17 @@ static void normals(const void *self, uint32_t primitive, sr_vec3 *axis, float *
 }
 
 const struct sr_shape_model sr_shape_bilinearmesh = {
-    .name = "bilinearmesh", .params = params, .size = sizeof(struct sr_shape_patches), .prepare = prepare,
-    .primitive_count = primitive_count, .bounds = bounds, .area = area, .intersect = intersect, .point = point, .uv = uv,
-    .sample = sample, .pdf = pdf, .normals = normals,
+    .name = "bilinearmesh",
+    .params = params,
+    .size = sizeof(struct sr_shape_patches),
+    .prepare = prepare,
+    .primitive_count = primitive_count,
+    .bounds = bounds,
+    .area = area,
+    .intersect = intersect,
+    .point = point,
+    .uv = uv,
+    .sample = sample,
+    .pdf = pdf,
+    .normals = normals,
 };

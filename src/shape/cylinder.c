@@ -16,17 +16,20 @@ static const struct sr_param params[] = {
 };
 #undef C
 
-static sr_status prepare(void *self, const struct sr_shape_placement *placement, struct sr_arena *arena, struct sr_error *error)
+static sr_status prepare(void *self, const struct sr_shape_placement *placement, struct sr_arena *arena,
+                         struct sr_error *error)
 {
     (void)arena;
     struct sr_shape_cylinder *c = self;
     if (!(c->radius > 0) || !isfinite(c->radius))
-        return sr_fail(error, SR_ERROR_INPUT, "cylinder: \"radius\" is %g, expected a positive number", (double)c->radius);
+        return sr_fail(error, SR_ERROR_INPUT, "cylinder: \"radius\" is %g, expected a positive number",
+                       (double)c->radius);
     float a = isnan(c->z_min) ? -1 : c->z_min, b = isnan(c->z_max) ? 1 : c->z_max;
     c->z_min = fminf(a, b);
     c->z_max = fmaxf(a, b);
     if (!(c->z_min < c->z_max) || !isfinite(c->z_max - c->z_min))
-        return sr_fail(error, SR_ERROR_INPUT, "cylinder: \"zmin\" %g and \"zmax\" %g must be finite and differ", (double)a, (double)b);
+        return sr_fail(error, SR_ERROR_INPUT, "cylinder: \"zmin\" %g and \"zmax\" %g must be finite and differ",
+                       (double)a, (double)b);
     c->object_to_world = placement->object_to_world;
     sr_status status = sr_quadric_angle("cylinder", c->phi_max, &c->phi_max_rad, error);
     return status != SR_OK ? status : sr_quadric_place(&c->quadric, "cylinder", placement, &c->flip_normals, error);
@@ -63,7 +66,8 @@ static float area(const void *self, uint32_t primitive)
     return (float)(object_area(c) * mean / (double)c->phi_max_rad);
 }
 
-static bool intersect(const void *self, uint32_t primitive, sr_vec3 o, sr_vec3 d, float t_min, float t_max, float *t, sr_vec2 *hit)
+static bool intersect(const void *self, uint32_t primitive, sr_vec3 o, sr_vec3 d, float t_min, float t_max, float *t,
+                      sr_vec2 *hit)
 {
     (void)primitive;
     const struct sr_shape_cylinder *c = self;
@@ -114,18 +118,21 @@ static sr_vec2 uv(const void *self, uint32_t primitive, sr_vec2 hit)
     return hit;
 }
 
-static bool sample(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec2 u, struct sr_shape_sample *s)
+static bool sample(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec2 u,
+                   struct sr_shape_sample *s)
 {
     (void)primitive;
     const struct sr_shape_cylinder *c = self;
     float phi = u.x * c->phi_max_rad;
-    double cos_phi = (double)cosf(phi), sin_phi = (double)sinf(phi), k = 1 / sqrt(cos_phi * cos_phi + sin_phi * sin_phi);
+    double cos_phi = (double)cosf(phi), sin_phi = (double)sinf(phi),
+           k = 1 / sqrt(cos_phi * cos_phi + sin_phi * sin_phi);
     sr_dvec3 n = {cos_phi * k, sin_phi * k, 0};
     double r = (double)c->radius, z = (double)c->z_min + (double)u.y * ((double)c->z_max - (double)c->z_min);
     return sr_quadric_sample(&c->quadric, (sr_dvec3){r * n.x, r * n.y, z}, n, u, 1 / object_area(c), reference, s);
 }
 
-static float pdf(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there)
+static float pdf(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec3 wi,
+                 const struct sr_point *there)
 {
     (void)primitive;
     (void)wi;
@@ -146,7 +153,17 @@ static void normals(const void *self, uint32_t primitive, sr_vec3 *axis, float *
 }
 
 const struct sr_shape_model sr_shape_cylinder = {
-    .name = "cylinder", .params = params, .size = sizeof(struct sr_shape_cylinder), .prepare = prepare,
-    .primitive_count = primitive_count, .bounds = bounds, .area = area, .intersect = intersect, .point = point, .uv = uv,
-    .sample = sample, .pdf = pdf, .normals = normals,
+    .name = "cylinder",
+    .params = params,
+    .size = sizeof(struct sr_shape_cylinder),
+    .prepare = prepare,
+    .primitive_count = primitive_count,
+    .bounds = bounds,
+    .area = area,
+    .intersect = intersect,
+    .point = point,
+    .uv = uv,
+    .sample = sample,
+    .pdf = pdf,
+    .normals = normals,
 };

@@ -17,14 +17,16 @@ static const struct sr_param params[] = {
 };
 #undef D
 
-static sr_status prepare(void *self, const struct sr_shape_placement *placement, struct sr_arena *arena, struct sr_error *error)
+static sr_status prepare(void *self, const struct sr_shape_placement *placement, struct sr_arena *arena,
+                         struct sr_error *error)
 {
     (void)arena;
     struct sr_shape_disk *d = self;
     if (!(d->radius > 0) || !isfinite(d->radius) || !isfinite(d->height))
         return sr_fail(error, SR_ERROR_INPUT, "disk: \"radius\" is %g, expected a positive number", (double)d->radius);
     if (!(d->inner_radius >= 0 && d->inner_radius < d->radius))
-        return sr_fail(error, SR_ERROR_INPUT, "disk: \"innerradius\" is %g, expected 0 to less than \"radius\" %g", (double)d->inner_radius, (double)d->radius);
+        return sr_fail(error, SR_ERROR_INPUT, "disk: \"innerradius\" is %g, expected 0 to less than \"radius\" %g",
+                       (double)d->inner_radius, (double)d->radius);
     d->object_to_world = placement->object_to_world;
     sr_status status = sr_quadric_angle("disk", d->phi_max, &d->phi_max_rad, error);
     return status != SR_OK ? status : sr_quadric_place(&d->quadric, "disk", placement, &d->flip_normals, error);
@@ -59,7 +61,8 @@ static float area(const void *self, uint32_t primitive)
     return (float)(object_area(d) * sr_quadric_area_scale(&d->quadric, up));
 }
 
-static bool intersect(const void *self, uint32_t primitive, sr_vec3 o, sr_vec3 d, float t_min, float t_max, float *t, sr_vec2 *hit)
+static bool intersect(const void *self, uint32_t primitive, sr_vec3 o, sr_vec3 d, float t_min, float t_max, float *t,
+                      sr_vec2 *hit)
 {
     (void)primitive;
     const struct sr_shape_disk *k = self;
@@ -69,7 +72,8 @@ static bool intersect(const void *self, uint32_t primitive, sr_vec3 o, sr_vec3 d
     double at = ((double)k->height - p.z) / w.z;
     if (!(at > (double)t_min && at < (double)t_max))
         return false;
-    double x = p.x + at * w.x, y = p.y + at * w.y, rho2 = x * x + y * y, r = (double)k->radius, hole = (double)k->inner_radius;
+    double x = p.x + at * w.x, y = p.y + at * w.y, rho2 = x * x + y * y, r = (double)k->radius,
+           hole = (double)k->inner_radius;
     if (rho2 > r * r || rho2 < hole * hole || (k->phi_max < 360 && sr_quadric_phi(x, y) > (double)k->phi_max_rad))
         return false;
     *t = (float)at;
@@ -108,7 +112,8 @@ static sr_vec2 uv(const void *self, uint32_t primitive, sr_vec2 hit)
     return coordinates(self, (double)hit.x, (double)hit.y);
 }
 
-static bool sample(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec2 u, struct sr_shape_sample *s)
+static bool sample(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec2 u,
+                   struct sr_shape_sample *s)
 {
     (void)primitive;
     const struct sr_shape_disk *d = self;
@@ -122,10 +127,12 @@ static bool sample(const void *self, uint32_t primitive, const struct sr_point *
         x = (double)(rho * cosf(phi));
         y = (double)(rho * sinf(phi));
     }
-    return sr_quadric_sample(&d->quadric, (sr_dvec3){x, y, (double)d->height}, up, coordinates(d, x, y), 1 / object_area(d), reference, s);
+    return sr_quadric_sample(&d->quadric, (sr_dvec3){x, y, (double)d->height}, up, coordinates(d, x, y),
+                             1 / object_area(d), reference, s);
 }
 
-static float pdf(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there)
+static float pdf(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec3 wi,
+                 const struct sr_point *there)
 {
     (void)primitive;
     (void)wi;
@@ -144,7 +151,17 @@ static void normals(const void *self, uint32_t primitive, sr_vec3 *axis, float *
 }
 
 const struct sr_shape_model sr_shape_disk = {
-    .name = "disk", .params = params, .size = sizeof(struct sr_shape_disk), .prepare = prepare,
-    .primitive_count = primitive_count, .bounds = bounds, .area = area, .intersect = intersect, .point = point, .uv = uv,
-    .sample = sample, .pdf = pdf, .normals = normals,
+    .name = "disk",
+    .params = params,
+    .size = sizeof(struct sr_shape_disk),
+    .prepare = prepare,
+    .primitive_count = primitive_count,
+    .bounds = bounds,
+    .area = area,
+    .intersect = intersect,
+    .point = point,
+    .uv = uv,
+    .sample = sample,
+    .pdf = pdf,
+    .normals = normals,
 };

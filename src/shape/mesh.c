@@ -16,29 +16,34 @@ static bool all_finite(const float *x, size_t count)
     return true;
 }
 
-static sr_status check_count(const struct sr_mesh_arrays *m, const char *what, const struct sr_slice *s, uint32_t expected,
-                             const char *because, struct sr_error *error)
+static sr_status check_count(const struct sr_mesh_arrays *m, const char *what, const struct sr_slice *s,
+                             uint32_t expected, const char *because, struct sr_error *error)
 {
     if (s->count != 0 && s->count != expected)
-        return sr_fail(error, SR_ERROR_INPUT, "%s: \"%s\" has %u values, expected %u, %s", m->name, what, s->count, expected, because);
+        return sr_fail(error, SR_ERROR_INPUT, "%s: \"%s\" has %u values, expected %u, %s", m->name, what, s->count,
+                       expected, because);
     return SR_OK;
 }
 
-static sr_status check(const struct sr_mesh_arrays *m, const struct sr_shape_placement *placement, struct sr_error *error)
+static sr_status check(const struct sr_mesh_arrays *m, const struct sr_shape_placement *placement,
+                       struct sr_error *error)
 {
     uint32_t vertices = m->P->count, corners = m->indices->count;
     if (vertices == 0)
         return sr_fail(error, SR_ERROR_INPUT, "%s: \"P\" is missing, expected the positions of the vertices", m->name);
     if (corners == 0)
-        return sr_fail(error, SR_ERROR_INPUT, "%s: \"indices\" are missing, and may be only with exactly %u \"P\", not %u",
-                       m->name, m->corners, vertices);
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "%s: \"indices\" are missing, and may be only with exactly %u \"P\", not %u", m->name,
+                       m->corners, vertices);
     if (corners % m->corners != 0)
-        return sr_fail(error, SR_ERROR_INPUT, "%s: %u \"indices\", expected a multiple of %u", m->name, corners, m->corners);
+        return sr_fail(error, SR_ERROR_INPUT, "%s: %u \"indices\", expected a multiple of %u", m->name, corners,
+                       m->corners);
     const int32_t *indices = m->indices->data;
     for (uint32_t i = 0; i < corners; ++i) {
         if (indices[i] < 0 || (uint32_t)indices[i] >= vertices)
-            return sr_fail(error, SR_ERROR_INPUT, "%s: index %d at place %u is out of range, expected 0 to %u as there are %u \"P\"",
-                           m->name, indices[i], i, vertices - 1, vertices);
+            return sr_fail(error, SR_ERROR_INPUT,
+                           "%s: index %d at place %u is out of range, expected 0 to %u as there are %u \"P\"", m->name,
+                           indices[i], i, vertices - 1, vertices);
     }
     sr_status status = check_count(m, "N", m->N, vertices, "one for each \"P\"", error);
     if (status == SR_OK && m->S)
@@ -50,7 +55,8 @@ static sr_status check(const struct sr_mesh_arrays *m, const struct sr_shape_pla
     if (status != SR_OK)
         return status;
     if (!all_finite(m->P->data, 3 * (size_t)vertices) || !all_finite(m->N->data, 3 * (size_t)m->N->count) ||
-        (m->S && !all_finite(m->S->data, 3 * (size_t)m->S->count)) || !all_finite(m->uv->data, 2 * (size_t)m->uv->count))
+        (m->S && !all_finite(m->S->data, 3 * (size_t)m->S->count)) ||
+        !all_finite(m->uv->data, 2 * (size_t)m->uv->count))
         return sr_fail(error, SR_ERROR_INPUT, "%s: \"P\", \"N\", \"S\" and \"uv\" must be finite numbers", m->name);
     if (!sr_transform_is_valid(&placement->object_to_world))
         return sr_fail(error, SR_ERROR_INPUT, "%s: the transform must be finite and invertible", m->name);
@@ -62,7 +68,8 @@ static sr_vec3 place(const float m[4][4], sr_vec3 v, double w)
 {
     double r[4];
     for (int i = 0; i < 4; ++i)
-        r[i] = (double)m[i][0] * (double)v.x + (double)m[i][1] * (double)v.y + (double)m[i][2] * (double)v.z + (double)m[i][3] * w;
+        r[i] = (double)m[i][0] * (double)v.x + (double)m[i][1] * (double)v.y + (double)m[i][2] * (double)v.z +
+               (double)m[i][3] * w;
     double s = w != 0 && r[3] != 1 ? 1 / r[3] : 1;
     return (sr_vec3){(float)(r[0] * s), (float)(r[1] * s), (float)(r[2] * s)};
 }
@@ -71,7 +78,8 @@ static sr_vec3 place_normal(const struct sr_transform *t, sr_vec3 n, double side
 {
     double r[3];
     for (int i = 0; i < 3; ++i)
-        r[i] = (double)t->inverse[0][i] * (double)n.x + (double)t->inverse[1][i] * (double)n.y + (double)t->inverse[2][i] * (double)n.z;
+        r[i] = (double)t->inverse[0][i] * (double)n.x + (double)t->inverse[1][i] * (double)n.y +
+               (double)t->inverse[2][i] * (double)n.z;
     double l = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
     double s = l > 0 ? side / l : 0;
     return (sr_vec3){(float)(r[0] * s), (float)(r[1] * s), (float)(r[2] * s)};

@@ -46,7 +46,8 @@ sr_status sr_quadric_place(struct sr_shape_quadric *q, const char *name, const s
 sr_status sr_quadric_angle(const char *name, float phi_max_deg, float *phi_max_rad, struct sr_error *error)
 {
     if (!(phi_max_deg > 0 && phi_max_deg <= 360))
-        return sr_fail(error, SR_ERROR_INPUT, "%s: \"phimax\" is %g, expected more than 0 and at most 360 degrees", name, (double)phi_max_deg);
+        return sr_fail(error, SR_ERROR_INPUT, "%s: \"phimax\" is %g, expected more than 0 and at most 360 degrees",
+                       name, (double)phi_max_deg);
     *phi_max_rad = phi_max_deg == 360 ? 2 * SR_PI : sr_radians(phi_max_deg);
     return SR_OK;
 }
@@ -72,14 +73,16 @@ struct sr_box sr_quadric_box(const struct sr_shape_quadric *q, sr_dvec3 centre, 
         // the ellipsoid's extent along axis i; a cylinder's is that of its rim and its height
         e[i] = is_box ? sqrt(x * x + y * y) + fabs(z) : sqrt(x * x + y * y + z * z);
     }
-    return sr_quadric_box_outward((sr_dvec3){c.x - e[0], c.y - e[1], c.z - e[2]}, (sr_dvec3){c.x + e[0], c.y + e[1], c.z + e[2]});
+    return sr_quadric_box_outward((sr_dvec3){c.x - e[0], c.y - e[1], c.z - e[2]},
+                                  (sr_dvec3){c.x + e[0], c.y + e[1], c.z + e[2]});
 }
 
 /* M^-T n, outside */
 static sr_dvec3 to_world_normal(const struct sr_shape_quadric *q, sr_dvec3 n)
 {
     const double(*k)[4] = q->to_object;
-    return (sr_dvec3){q->side * (k[0][0] * n.x + k[1][0] * n.y + k[2][0] * n.z), q->side * (k[0][1] * n.x + k[1][1] * n.y + k[2][1] * n.z),
+    return (sr_dvec3){q->side * (k[0][0] * n.x + k[1][0] * n.y + k[2][0] * n.z),
+                      q->side * (k[0][1] * n.x + k[1][1] * n.y + k[2][1] * n.z),
                       q->side * (k[0][2] * n.x + k[1][2] * n.y + k[2][2] * n.z)};
 }
 

@@ -25,17 +25,21 @@ static const struct sr_param params[] = {
 };
 #undef S
 
-static sr_status prepare(void *self, const struct sr_shape_placement *placement, struct sr_arena *arena, struct sr_error *error)
+static sr_status prepare(void *self, const struct sr_shape_placement *placement, struct sr_arena *arena,
+                         struct sr_error *error)
 {
     (void)arena;
     struct sr_shape_sphere *s = self;
     if (!(s->radius > 0) || !isfinite(s->radius))
-        return sr_fail(error, SR_ERROR_INPUT, "sphere: \"radius\" is %g, expected a positive number", (double)s->radius);
+        return sr_fail(error, SR_ERROR_INPUT, "sphere: \"radius\" is %g, expected a positive number",
+                       (double)s->radius);
     float r = s->radius, a = isnan(s->z_min) ? -r : s->z_min, b = isnan(s->z_max) ? r : s->z_max;
     s->z_min = sr_clamp(fminf(a, b), -r, r);
     s->z_max = sr_clamp(fmaxf(a, b), -r, r);
     if (!(s->z_min < s->z_max))
-        return sr_fail(error, SR_ERROR_INPUT, "sphere: nothing is left between \"zmin\" %g and \"zmax\" %g of radius %g", (double)a, (double)b, (double)r);
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "sphere: nothing is left between \"zmin\" %g and \"zmax\" %g of radius %g", (double)a, (double)b,
+                       (double)r);
     sr_status status = sr_quadric_angle("sphere", s->phi_max, &s->phi_max_rad, error);
     if (status == SR_OK)
         status = sr_quadric_place(&s->quadric, "sphere", placement, &s->flip_normals, error);
@@ -75,7 +79,8 @@ static struct sr_box bounds(const void *self, uint32_t primitive)
     struct sr_box whole = sr_quadric_box(&s->quadric, (sr_dvec3){0, 0, 0}, (sr_dvec3){r, r, r}, false);
     // a partial one lies in the whole one's box and in that of the cylinder around it
     double widest = lo > 0 ? sqrt((r - lo) * (r + lo)) : hi < 0 ? sqrt((r - hi) * (r + hi)) : r;
-    struct sr_box b = sr_quadric_box(&s->quadric, (sr_dvec3){0, 0, (lo + hi) / 2}, (sr_dvec3){widest, widest, (hi - lo) / 2}, true);
+    struct sr_box b =
+        sr_quadric_box(&s->quadric, (sr_dvec3){0, 0, (lo + hi) / 2}, (sr_dvec3){widest, widest, (hi - lo) / 2}, true);
     return (struct sr_box){{fmaxf(whole.lo.x, b.lo.x), fmaxf(whole.lo.y, b.lo.y), fmaxf(whole.lo.z, b.lo.z)},
                            {fminf(whole.hi.x, b.hi.x), fminf(whole.hi.y, b.hi.y), fminf(whole.hi.z, b.hi.z)}};
 }
@@ -91,7 +96,8 @@ static float area(const void *self, uint32_t primitive)
     (void)primitive;
     const struct sr_shape_sphere *s = self;
     if (s->is_rigid)
-        return (float)(object_area(s) * (double)s->world_radius * (double)s->world_radius / ((double)s->radius * (double)s->radius));
+        return (float)(object_area(s) * (double)s->world_radius * (double)s->world_radius /
+                       ((double)s->radius * (double)s->radius));
     enum { nodes = 96 };
     double z[nodes], wz[nodes], phi[nodes], w_phi[nodes], sum = 0;
     sr_gauss_legendre(nodes, (double)s->theta_z_max, (double)s->theta_z_min, z, wz);
@@ -99,7 +105,8 @@ static float area(const void *self, uint32_t primitive)
     for (int i = 0; i < nodes; ++i) {
         double rho = sin(z[i]), c = cos(z[i]);
         for (int j = 0; j < nodes; ++j)
-            sum += wz[i] * w_phi[j] * rho * sr_quadric_area_scale(&s->quadric, (sr_dvec3){rho * cos(phi[j]), rho * sin(phi[j]), c});
+            sum += wz[i] * w_phi[j] * rho *
+                   sr_quadric_area_scale(&s->quadric, (sr_dvec3){rho * cos(phi[j]), rho * sin(phi[j]), c});
     }
     return (float)(sum * (double)s->radius * (double)s->radius);
 }
@@ -145,7 +152,8 @@ static bool exists(const struct sr_shape_sphere *s, sr_dvec3 p)
     return s->phi_max == 360 || sr_quadric_phi(p.x, p.y) <= (double)s->phi_max_rad;
 }
 
-static bool intersect(const void *self, uint32_t primitive, sr_vec3 o, sr_vec3 d, float t_min, float t_max, float *t, sr_vec2 *hit)
+static bool intersect(const void *self, uint32_t primitive, sr_vec3 o, sr_vec3 d, float t_min, float t_max, float *t,
+                      sr_vec2 *hit)
 {
     (void)primitive;
     const struct sr_shape_sphere *s = self;
@@ -175,7 +183,8 @@ static void point(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_p
     (void)primitive;
     const struct sr_shape_sphere *s = self;
     struct sr_quadric_point o;
-    double r = (double)s->radius, phi_max = (double)s->phi_max_rad, theta_range = (double)s->theta_z_max - (double)s->theta_z_min;
+    double r = (double)s->radius, phi_max = (double)s->phi_max_rad,
+           theta_range = (double)s->theta_z_max - (double)s->theta_z_min;
     o.n = direction(hit);
     o.p = sr_dscale(r, o.n);
     double rho = sqrt(o.n.x * o.n.x + o.n.y * o.n.y);
@@ -199,18 +208,21 @@ static sr_vec2 uv(const void *self, uint32_t primitive, sr_vec2 hit)
 
 /* Whether the sphere is drawn by its cone; then the way to its centre [m] and (R / distance)^2. Points on the sphere, to
  * within rounding, count as inside. */
-static bool by_cone(const struct sr_shape_sphere *s, const struct sr_point *reference, sr_dvec3 *to_centre, double *sin2_max)
+static bool by_cone(const struct sr_shape_sphere *s, const struct sr_point *reference, sr_dvec3 *to_centre,
+                    double *sin2_max)
 {
     if (!s->is_full || !s->is_rigid)
         return false;
     const double(*m)[4] = s->quadric.to_world;
-    *to_centre = (sr_dvec3){m[0][3] - (double)reference->p.x, m[1][3] - (double)reference->p.y, m[2][3] - (double)reference->p.z};
+    *to_centre = (sr_dvec3){m[0][3] - (double)reference->p.x, m[1][3] - (double)reference->p.y,
+                            m[2][3] - (double)reference->p.z};
     double d2 = sr_ddot(*to_centre, *to_centre), R = (double)s->world_radius;
     *sin2_max = R * R / d2;
     return sqrt(d2) > R * (1 + 1e-6) + 2 * (double)sr_max_component(reference->p_error);
 }
 
-static bool sample(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec2 u, struct sr_shape_sample *sample)
+static bool sample(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec2 u,
+                   struct sr_shape_sample *sample)
 {
     (void)primitive;
     const struct sr_shape_sphere *s = self;
@@ -221,14 +233,17 @@ static bool sample(const void *self, uint32_t primitive, const struct sr_point *
         double rho = sqrt(fmax(0, (1 - z) * (1 + z)));
         float phi = u.y * s->phi_max_rad;
         sr_dvec3 n = unit((sr_dvec3){rho * (double)cosf(phi), rho * (double)sinf(phi), z});
-        return sr_quadric_sample(&s->quadric, sr_dscale(r, n), n, coordinates(s, n), 1 / object_area(s), reference, sample);
+        return sr_quadric_sample(&s->quadric, sr_dscale(r, n), n, coordinates(s, n), 1 / object_area(s), reference,
+                                 sample);
     }
 
     // theta: at the reference, from the axis; beta: at the sphere, between ray and radius; alpha = beta - theta: at the centre
     double cos_max = sqrt(1 - s2), one_minus_cos_max = s2 / (1 + cos_max), x = (double)u.x * one_minus_cos_max;
     double cos_theta = 1 - x, sin_theta = sqrt(x * (2 - x));
-    double sin_beta = sqrt(fmin(1, (double)u.x * (2 - x) / (1 + cos_max))), cos_beta = sqrt((1 - sin_beta) * (1 + sin_beta));
-    double sin_alpha = sin_beta * cos_theta - cos_beta * sin_theta, cos_alpha = cos_beta * cos_theta + sin_beta * sin_theta;
+    double sin_beta = sqrt(fmin(1, (double)u.x * (2 - x) / (1 + cos_max))),
+           cos_beta = sqrt((1 - sin_beta) * (1 + sin_beta));
+    double sin_alpha = sin_beta * cos_theta - cos_beta * sin_theta,
+           cos_alpha = cos_beta * cos_theta + sin_beta * sin_theta;
     float phi = 2 * SR_PI * u.y;
     double a = sin_alpha * (double)cosf(phi), b = sin_alpha * (double)sinf(phi);
     sr_dvec3 axis = unit(c);
@@ -243,7 +258,8 @@ static bool sample(const void *self, uint32_t primitive, const struct sr_point *
     return true;
 }
 
-static float pdf(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there)
+static float pdf(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec3 wi,
+                 const struct sr_point *there)
 {
     (void)primitive;
     (void)wi;
@@ -265,7 +281,17 @@ static void normals(const void *self, uint32_t primitive, sr_vec3 *axis, float *
 }
 
 const struct sr_shape_model sr_shape_sphere = {
-    .name = "sphere", .params = params, .size = sizeof(struct sr_shape_sphere), .prepare = prepare,
-    .primitive_count = primitive_count, .bounds = bounds, .area = area, .intersect = intersect, .point = point, .uv = uv,
-    .sample = sample, .pdf = pdf, .normals = normals,
+    .name = "sphere",
+    .params = params,
+    .size = sizeof(struct sr_shape_sphere),
+    .prepare = prepare,
+    .primitive_count = primitive_count,
+    .bounds = bounds,
+    .area = area,
+    .intersect = intersect,
+    .point = point,
+    .uv = uv,
+    .sample = sample,
+    .pdf = pdf,
+    .normals = normals,
 };

@@ -7,7 +7,8 @@
 static bool is_affine3(const sr_vec3 *a, const int32_t *c, float tolerance)
 {
     sr_vec3 e = sr_sub(a[c[1]], a[c[0]]), f = sr_sub(a[c[2]], a[c[0]]), g = sr_sub(a[c[3]], a[c[1]]);
-    float extent = fmaxf(sr_max_component((sr_vec3){fabsf(e.x), fabsf(e.y), fabsf(e.z)}), sr_max_component((sr_vec3){fabsf(f.x), fabsf(f.y), fabsf(f.z)}));
+    float extent = fmaxf(sr_max_component((sr_vec3){fabsf(e.x), fabsf(e.y), fabsf(e.z)}),
+                         sr_max_component((sr_vec3){fabsf(f.x), fabsf(f.y), fabsf(f.z)}));
     sr_vec3 rest = sr_sub(g, f);
     return fmaxf(fabsf(rest.x), fmaxf(fabsf(rest.y), fabsf(rest.z))) <= tolerance * extent;
 }
@@ -43,9 +44,12 @@ uint32_t sr_shape_split_planar_quads(const struct sr_shape_patches *patches, str
     if (moved == 0)
         return 0;
     size_t vertices = 4 * (size_t)moved, left = count - moved;
-    int32_t *corners = sr_arena_alloc(arena, 6 * (size_t)moved * sizeof(int32_t)), *kept = sr_arena_alloc(arena, 4 * left * sizeof(int32_t) + 4);
-    int32_t *faces = sr_arena_alloc(arena, 2 * (size_t)moved * sizeof(int32_t)), *kept_faces = sr_arena_alloc(arena, left * sizeof(int32_t) + 4);
-    sr_vec3 *P = sr_arena_alloc(arena, vertices * sizeof(sr_vec3) + 4), *N = sr_arena_alloc(arena, vertices * sizeof(sr_vec3));
+    int32_t *corners = sr_arena_alloc(arena, 6 * (size_t)moved * sizeof(int32_t)),
+            *kept = sr_arena_alloc(arena, 4 * left * sizeof(int32_t) + 4);
+    int32_t *faces = sr_arena_alloc(arena, 2 * (size_t)moved * sizeof(int32_t)),
+            *kept_faces = sr_arena_alloc(arena, left * sizeof(int32_t) + 4);
+    sr_vec3 *P = sr_arena_alloc(arena, vertices * sizeof(sr_vec3) + 4),
+            *N = sr_arena_alloc(arena, vertices * sizeof(sr_vec3));
     sr_vec2 *uv = sr_arena_alloc(arena, vertices * sizeof(sr_vec2));
     if (!corners || !kept || !faces || !kept_faces || !P || !N || !uv)
         return UINT32_MAX;

@@ -12,22 +12,26 @@
  * A triangle without area is never sampled. */
 #include "shape/mesh.h"
 
-static const float min_solid_angle = 3e-4f, max_solid_angle = 6.22f; // [sr] within, the spherical triangle is well-conditioned
-static const float small_extent2 = 0.015f; // (longest edge / distance)^2 below which area sampling is taken at once
+static const float min_solid_angle = 3e-4f,
+                   max_solid_angle = 6.22f; // [sr] within, the spherical triangle is well-conditioned
+static const float small_extent2 = 0.015f;  // (longest edge / distance)^2 below which area sampling is taken at once
 
 #define T struct sr_shape_mesh
 static const struct sr_param params[] = {
-    {SR_PARAM_INTS, "indices", "1", 0, INT32_MAX, NAN, offsetof(T, indices), "three vertices a triangle; 0 1 2 if there are but three P"},
+    {SR_PARAM_INTS, "indices", "1", 0, INT32_MAX, NAN, offsetof(T, indices),
+     "three vertices a triangle; 0 1 2 if there are but three P"},
     {SR_PARAM_POINT3S, "P", "m", -INFINITY, INFINITY, NAN, offsetof(T, P), "positions of the vertices"},
     {SR_PARAM_NORMAL3S, "N", "1", -INFINITY, INFINITY, NAN, offsetof(T, N), "shading normals; their side is outside"},
     {SR_PARAM_VECTOR3S, "S", "1", -INFINITY, INFINITY, NAN, offsetof(T, S), "shading tangents"},
     {SR_PARAM_POINT2S, "uv", "1", -INFINITY, INFINITY, NAN, offsetof(T, uv), "texture coordinates"},
-    {SR_PARAM_INTS, "faceIndices", "1", 0, INT32_MAX, NAN, offsetof(T, face_indices), "number of the face that each triangle came from"},
+    {SR_PARAM_INTS, "faceIndices", "1", 0, INT32_MAX, NAN, offsetof(T, face_indices),
+     "number of the face that each triangle came from"},
     {0},
 };
 #undef T
 
-static sr_status prepare(void *self, const struct sr_shape_placement *placement, struct sr_arena *arena, struct sr_error *error)
+static sr_status prepare(void *self, const struct sr_shape_placement *placement, struct sr_arena *arena,
+                         struct sr_error *error)
 {
     struct sr_shape_mesh *m = self;
     const struct sr_mesh_arrays a = {"trianglemesh", 3, &m->indices, &m->P, &m->N, &m->S, &m->uv, &m->face_indices};
@@ -118,7 +122,8 @@ static void point(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_p
         x->uv = (sr_vec2){b0 * t0.x + b1 * t1.x + b2 * t2.x, b0 * t0.y + b1 * t1.y + b2 * t2.y};
         k = (struct slope){t0.x - t2.x, t0.y - t2.y, t1.x - t2.x, t1.y - t2.y, 0};
         float determinant = sr_difference_of_products(k.u02, k.v12, k.v02, k.u12);
-        has_slope = fabsf(determinant) > 1e-9f * (fabsf(k.u02 * k.v12) + fabsf(k.v02 * k.u12)) && fabsf(determinant) > 1e-30f;
+        has_slope =
+            fabsf(determinant) > 1e-9f * (fabsf(k.u02 * k.v12) + fabsf(k.v02 * k.u12)) && fabsf(determinant) > 1e-30f;
         k.inverse = has_slope ? 1 / determinant : 0;
     } else {
         x->uv = (sr_vec2){b1 + b2, b2};
@@ -170,7 +175,8 @@ static sr_vec2 uv(const void *self, uint32_t primitive, sr_vec2 hit)
         return (sr_vec2){b1 + b2, b2};
     const int32_t *c = corners(m, primitive);
     const sr_vec2 *t = m->uv.data;
-    return (sr_vec2){b0 * t[c[0]].x + b1 * t[c[1]].x + b2 * t[c[2]].x, b0 * t[c[0]].y + b1 * t[c[1]].y + b2 * t[c[2]].y};
+    return (sr_vec2){b0 * t[c[0]].x + b1 * t[c[1]].x + b2 * t[c[2]].x,
+                     b0 * t[c[0]].y + b1 * t[c[1]].y + b2 * t[c[2]].y};
 }
 
 /* The outside unit normal at barycentrics. */
@@ -215,7 +221,8 @@ static void corner_weights(const struct sr_point *reference, const sr_vec3 v[3],
     w[3] = k[2];
 }
 
-static bool sample(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec2 u, struct sr_shape_sample *s)
+static bool sample(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec2 u,
+                   struct sr_shape_sample *s)
 {
     const struct sr_shape_mesh *m = self;
     const int32_t *c = corners(m, primitive);
@@ -253,7 +260,8 @@ static bool sample(const void *self, uint32_t primitive, const struct sr_point *
     return s->pdf > 0 && isfinite(s->pdf);
 }
 
-static float pdf(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there)
+static float pdf(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec3 wi,
+                 const struct sr_point *there)
 {
     sr_vec3 v[3];
     vertices(self, primitive, v);
@@ -286,7 +294,16 @@ static void normals(const void *self, uint32_t primitive, sr_vec3 *axis, float *
 }
 
 const struct sr_shape_model sr_shape_trianglemesh = {
-    .name = "trianglemesh", .params = params, .size = sizeof(struct sr_shape_mesh), .prepare = prepare,
-    .primitive_count = primitive_count, .bounds = bounds, .area = area, .point = point, .uv = uv,
-    .sample = sample, .pdf = pdf, .normals = normals,
+    .name = "trianglemesh",
+    .params = params,
+    .size = sizeof(struct sr_shape_mesh),
+    .prepare = prepare,
+    .primitive_count = primitive_count,
+    .bounds = bounds,
+    .area = area,
+    .point = point,
+    .uv = uv,
+    .sample = sample,
+    .pdf = pdf,
+    .normals = normals,
 };

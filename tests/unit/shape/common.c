@@ -8,7 +8,8 @@ static void *keep(const void *data, size_t size)
     return sr_arena_copy(&test_arena, data, size);
 }
 
-struct sr_shape make_partial_sphere(float radius, float z_min, float z_max, float phi_max, struct sr_shape_placement placement)
+struct sr_shape make_partial_sphere(float radius, float z_min, float z_max, float phi_max,
+                                    struct sr_shape_placement placement)
 {
     struct sr_shape_sphere s = {.radius = radius, .z_min = z_min, .z_max = z_max, .phi_max = phi_max};
     return PREPARE(sr_shape_sphere, keep(&s, sizeof(s)), placement);
@@ -19,13 +20,15 @@ struct sr_shape make_sphere(float radius, struct sr_shape_placement placement)
     return make_partial_sphere(radius, NAN, NAN, 360, placement);
 }
 
-struct sr_shape make_disk(float height, float radius, float inner_radius, float phi_max, struct sr_shape_placement placement)
+struct sr_shape make_disk(float height, float radius, float inner_radius, float phi_max,
+                          struct sr_shape_placement placement)
 {
     struct sr_shape_disk d = {.height = height, .radius = radius, .inner_radius = inner_radius, .phi_max = phi_max};
     return PREPARE(sr_shape_disk, keep(&d, sizeof(d)), placement);
 }
 
-struct sr_shape make_cylinder(float radius, float z_min, float z_max, float phi_max, struct sr_shape_placement placement)
+struct sr_shape make_cylinder(float radius, float z_min, float z_max, float phi_max,
+                              struct sr_shape_placement placement)
 {
     struct sr_shape_cylinder c = {.radius = radius, .z_min = z_min, .z_max = z_max, .phi_max = phi_max};
     return PREPARE(sr_shape_cylinder, keep(&c, sizeof(c)), placement);
@@ -48,12 +51,14 @@ struct sr_shape make_patch(sr_vec3 p00, sr_vec3 p10, sr_vec3 p01, sr_vec3 p11, s
 static bool cast_triangle(const struct sr_shape_mesh *m, sr_vec3 o, sr_vec3 d, float *t, sr_vec2 *hit)
 {
     const sr_vec3 *v = m->P.data;
-    double e[3] = {v[1].x - v[0].x, v[1].y - v[0].y, v[1].z - v[0].z}, f[3] = {v[2].x - v[0].x, v[2].y - v[0].y, v[2].z - v[0].z};
+    double e[3] = {v[1].x - v[0].x, v[1].y - v[0].y, v[1].z - v[0].z},
+           f[3] = {v[2].x - v[0].x, v[2].y - v[0].y, v[2].z - v[0].z};
     double r[3] = {o.x - v[0].x, o.y - v[0].y, o.z - v[0].z}, w[3] = {d.x, d.y, d.z};
     double wf[3] = {w[1] * f[2] - w[2] * f[1], w[2] * f[0] - w[0] * f[2], w[0] * f[1] - w[1] * f[0]};
     double re[3] = {r[1] * e[2] - r[2] * e[1], r[2] * e[0] - r[0] * e[2], r[0] * e[1] - r[1] * e[0]};
     double det = e[0] * wf[0] + e[1] * wf[1] + e[2] * wf[2];
-    double a = (r[0] * wf[0] + r[1] * wf[1] + r[2] * wf[2]) / det, b = (w[0] * re[0] + w[1] * re[1] + w[2] * re[2]) / det;
+    double a = (r[0] * wf[0] + r[1] * wf[1] + r[2] * wf[2]) / det,
+           b = (w[0] * re[0] + w[1] * re[1] + w[2] * re[2]) / det;
     double k = (f[0] * re[0] + f[1] * re[1] + f[2] * re[2]) / det;
     if (!(a >= 0 && b >= 0 && a + b <= 1 && k > 0))
         return false;

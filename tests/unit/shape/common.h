@@ -32,7 +32,8 @@ static inline struct sr_transform then(struct sr_transform a, struct sr_transfor
 /* Prepares, or fails the test. The arena lives as long as the program. */
 extern struct sr_arena test_arena;
 #define PREPARE(shape, self, placement) prepare_or_fail(&(shape), self, placement)
-static inline struct sr_shape prepare_or_fail(const struct sr_shape_model *model, void *self, struct sr_shape_placement placement)
+static inline struct sr_shape prepare_or_fail(const struct sr_shape_model *model, void *self,
+                                              struct sr_shape_placement placement)
 {
     struct sr_error error = {0};
     if (model->prepare(self, &placement, &test_arena, &error) != SR_OK)
@@ -41,9 +42,12 @@ static inline struct sr_shape prepare_or_fail(const struct sr_shape_model *model
 }
 
 struct sr_shape make_sphere(float radius, struct sr_shape_placement placement);
-struct sr_shape make_partial_sphere(float radius, float z_min, float z_max, float phi_max, struct sr_shape_placement placement);
-struct sr_shape make_disk(float height, float radius, float inner_radius, float phi_max, struct sr_shape_placement placement);
-struct sr_shape make_cylinder(float radius, float z_min, float z_max, float phi_max, struct sr_shape_placement placement);
+struct sr_shape make_partial_sphere(float radius, float z_min, float z_max, float phi_max,
+                                    struct sr_shape_placement placement);
+struct sr_shape make_disk(float height, float radius, float inner_radius, float phi_max,
+                          struct sr_shape_placement placement);
+struct sr_shape make_cylinder(float radius, float z_min, float z_max, float phi_max,
+                              struct sr_shape_placement placement);
 struct sr_shape make_triangle(sr_vec3 a, sr_vec3 b, sr_vec3 c, struct sr_shape_placement placement);
 struct sr_shape make_patch(sr_vec3 p00, sr_vec3 p10, sr_vec3 p01, sr_vec3 p11, struct sr_shape_placement placement);
 

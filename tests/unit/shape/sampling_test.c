@@ -82,7 +82,8 @@ TEST(rectangle_sends_the_irradiance_of_the_catalogue_as_patch_and_as_triangles)
     sr_vec3 s[4] = {{-.5f, -.5f, 1}, {.5f, -.5f, 1}, {-.5f, .5f, 1}, {.5f, .5f, 1}};
     EXPECT_IRRADIANCE(irradiance(make_patch(s[0], s[1], s[2], s[3], here()), 0, &x, 200000, 12), 0.752274688454);
     // a parallelogram that is no rectangle goes by area: two halves of the square, sheared, are the square again
-    struct sr_tally l = irradiance(make_patch(s[0], s[1], (sr_vec3){.5f, .5f, 1}, (sr_vec3){1.5f, .5f, 1}, here()), 0, &x, 400000, 13);
+    struct sr_tally l =
+        irradiance(make_patch(s[0], s[1], (sr_vec3){.5f, .5f, 1}, (sr_vec3){1.5f, .5f, 1}, here()), 0, &x, 400000, 13);
     struct sr_tally t0 = irradiance(make_triangle(s[0], s[1], s[3], here()), 0, &x, 200000, 14);
     struct sr_tally t1 = irradiance(make_triangle(s[1], (sr_vec3){1.5f, .5f, 1}, s[3], here()), 0, &x, 200000, 15);
     error = hypot(sr_tally_standard_error(&l), hypot(sr_tally_standard_error(&t0), sr_tally_standard_error(&t1)));
@@ -107,18 +108,21 @@ static const sr_vec3 polygon[3] = {{1, 0, 1}, {-1, 2, 1.5f}, {-1, -1, 2}};
 TEST(triangle_sends_the_irradiance_of_lambert)
 {
     struct sr_point x = receiver(origin, up);
-    EXPECT_IRRADIANCE(irradiance(make_triangle(polygon[0], polygon[1], polygon[2], here()), 0, &x, 200000, 19), 0.875254739837);
+    EXPECT_IRRADIANCE(irradiance(make_triangle(polygon[0], polygon[1], polygon[2], here()), 0, &x, 200000, 19),
+                      0.875254739837);
 }
 
 /* Van Oosterom & Strackee 1983; 4 asin(a b / sqrt((a^2 + h^2)(b^2 + h^2))); 2 pi (1 - cos). With and without a normal. */
 TEST(mean_of_1_over_pdf_is_the_solid_angle)
 {
     struct sr_shape t = make_triangle(polygon[0], polygon[1], polygon[2], here());
-    struct sr_shape r = make_patch((sr_vec3){-1, -.5f, 1}, (sr_vec3){1, -.5f, 1}, (sr_vec3){-1, .5f, 1}, (sr_vec3){1, .5f, 1}, here());
+    struct sr_shape r =
+        make_patch((sr_vec3){-1, -.5f, 1}, (sr_vec3){1, -.5f, 1}, (sr_vec3){-1, .5f, 1}, (sr_vec3){1, .5f, 1}, here());
     struct sr_shape s = make_sphere(1, placed(move(0, 0, 3))), d = make_disk(2, 1, 0, 360, here());
     for (int k = 0; k < 2; ++k) {
         struct sr_point x = receiver(origin, k ? up : nowhere);
-        struct sr_tally a = solid_angle(t, 0, &x, 100000, 20), b = solid_angle(r, 0, &x, 100000, 21), c = solid_angle(d, 0, &x, 100000, 22);
+        struct sr_tally a = solid_angle(t, 0, &x, 100000, 20), b = solid_angle(r, 0, &x, 100000, 21),
+                        c = solid_angle(d, 0, &x, 100000, 22);
         if (k) {
             EXPECT_MEAN(a, 0.972893793949);
             EXPECT_MEAN(b, 1.28700221759);
@@ -161,7 +165,8 @@ TEST(sphere_cone_is_uniform_and_on_the_near_side)
         EXPECT(s.model->sample(s.self, 0, &x, (sr_vec2){uniform(&rng), uniform(&rng)}, &y));
         sr_vec3 w = sr_sub(y.p, x.p), l = sr_to_local(&f, sr_normalize(w));
         EXPECT(sr_dot(w, y.n) < 1e-3f);
-        int a = (int)((1 - (double)l.z) / whole * 10), b = (int)((atan2((double)l.y, (double)l.x) / 6.283185308 + 0.5) * 10);
+        int a = (int)((1 - (double)l.z) / whole * 10),
+            b = (int)((atan2((double)l.y, (double)l.x) / 6.283185308 + 0.5) * 10);
         seen[(a > 9 ? 9 : a) * 10 + (b > 9 ? 9 : b)] += 1;
     }
     for (int i = 0; i < 100; ++i)
@@ -174,15 +179,25 @@ static struct sr_shape zoo(int k, struct sr_transform t)
 {
     struct sr_shape_placement p = placed(t);
     switch (k) {
-    case 0: return make_triangle((sr_vec3){0, 0, 0}, (sr_vec3){1, 0, 0.2f}, (sr_vec3){0.3f, 0.9f, 0}, p);
-    case 1: return make_patch((sr_vec3){0, 0, 0}, (sr_vec3){1, 0, 0}, (sr_vec3){0, 1, 0}, (sr_vec3){1, 1, 0}, p);
-    case 2: return make_patch((sr_vec3){0, 0, 0}, (sr_vec3){1, 0, 0}, (sr_vec3){0.4f, 1, 0}, (sr_vec3){1.4f, 1, 0}, p);
-    case 3: return make_patch((sr_vec3){0, 0, 0}, (sr_vec3){1, 0, 0.3f}, (sr_vec3){0, 1.2f, 0.3f}, (sr_vec3){1.1f, 1, -0.2f}, p);
-    case 4: return make_sphere(1, p);
-    case 5: return make_partial_sphere(1, -0.5f, 0.8f, 250, p);
-    case 6: return make_disk(0.2f, 1, 0, 360, p);
-    case 7: return make_disk(0.2f, 1, 0.4f, 200, p);
-    default: return make_cylinder(0.5f, -0.6f, 0.7f, 300, p);
+    case 0:
+        return make_triangle((sr_vec3){0, 0, 0}, (sr_vec3){1, 0, 0.2f}, (sr_vec3){0.3f, 0.9f, 0}, p);
+    case 1:
+        return make_patch((sr_vec3){0, 0, 0}, (sr_vec3){1, 0, 0}, (sr_vec3){0, 1, 0}, (sr_vec3){1, 1, 0}, p);
+    case 2:
+        return make_patch((sr_vec3){0, 0, 0}, (sr_vec3){1, 0, 0}, (sr_vec3){0.4f, 1, 0}, (sr_vec3){1.4f, 1, 0}, p);
+    case 3:
+        return make_patch((sr_vec3){0, 0, 0}, (sr_vec3){1, 0, 0.3f}, (sr_vec3){0, 1.2f, 0.3f},
+                          (sr_vec3){1.1f, 1, -0.2f}, p);
+    case 4:
+        return make_sphere(1, p);
+    case 5:
+        return make_partial_sphere(1, -0.5f, 0.8f, 250, p);
+    case 6:
+        return make_disk(0.2f, 1, 0, 360, p);
+    case 7:
+        return make_disk(0.2f, 1, 0.4f, 200, p);
+    default:
+        return make_cylinder(0.5f, -0.6f, 0.7f, 300, p);
     }
 }
 enum { zoo_count = 9 };
@@ -207,7 +222,9 @@ TEST(pdf_is_what_sample_said)
                 off[2] += deviation > 1e-2;
             }
             if (off[0] > 6 || off[1] > 1 || off[2] > 0)
-                test_fail(__FILE__, __LINE__, "shape %d, scaled %d: of 3000 places, %d %d %d deviate by 1e-4, 1e-3, 1e-2", k, scaled, off[0], off[1], off[2]);
+                test_fail(__FILE__, __LINE__,
+                          "shape %d, scaled %d: of 3000 places, %d %d %d deviate by 1e-4, 1e-3, 1e-2", k, scaled,
+                          off[0], off[1], off[2]);
         }
     }
 }
@@ -259,7 +276,8 @@ TEST(sampling_by_area_is_uniform_in_the_right_measure)
             sr_tally_add(&A, 1 / (double)y.pdf); // mean of 1 / pdf: the area
         }
         if (!(fabs(A.mean / (double)s.model->area(s.self, 0) - 1) < 4.9 * sr_tally_standard_error(&A) / A.mean + 1e-5))
-            test_fail(__FILE__, __LINE__, "shape %d: area %g by samples, %g told", k, A.mean, (double)s.model->area(s.self, 0));
+            test_fail(__FILE__, __LINE__, "shape %d: area %g by samples, %g told", k, A.mean,
+                      (double)s.model->area(s.self, 0));
     }
 }
 
@@ -267,10 +285,10 @@ TEST(sampling_by_area_is_uniform_in_the_right_measure)
 TEST(samples_fill_uv_evenly)
 {
     for (int k = 0; k < 4; ++k) {
-        struct sr_shape s = k == 0 ? make_partial_sphere(2, -1, 1.5f, 270, here())
-                          : k == 1 ? make_cylinder(1, 0, 3, 200, here())
-                          : k == 2 ? make_disk(0, 2, 0.5f, 300, here())
-                                   : make_disk(0, 2, 0, 360, here());
+        struct sr_shape s = k == 0   ? make_partial_sphere(2, -1, 1.5f, 270, here())
+                            : k == 1 ? make_cylinder(1, 0, 3, 200, here())
+                            : k == 2 ? make_disk(0, 2, 0.5f, 300, here())
+                                     : make_disk(0, 2, 0, 360, here());
         enum { n = 8, draws = 64000 };
         double seen[n * n] = {0}, expected[n * n];
         struct sr_rng rng = sr_rng_seed(33, (uint64_t)k);
@@ -353,13 +371,15 @@ TEST(triangles_of_all_sizes_keep_their_solid_angle)
     struct sr_rng rng = sr_rng_seed(50, 1);
     for (int i = 0; i < 200; ++i) {
         float size = powf(10, -3 + 4 * uniform(&rng)), thin = powf(10, -3 * uniform(&rng));
-        sr_vec3 c = random_direction(&rng), e = sr_scale(size, random_direction(&rng)), f = sr_scale(size * thin, random_direction(&rng));
+        sr_vec3 c = random_direction(&rng), e = sr_scale(size, random_direction(&rng)),
+                f = sr_scale(size * thin, random_direction(&rng));
         sr_vec3 v[3] = {c, sr_add(c, e), sr_add(c, f)};
         struct sr_shape s = make_triangle(v[0], v[1], v[2], here());
         double exact = solid_angle_exactly(v);
         struct sr_point x = receiver(origin, i % 2 ? random_direction(&rng) : nowhere);
         struct sr_tally omega = solid_angle(s, 0, &x, 2000, (uint64_t)i);
         if (!(fabs(omega.mean - exact) < 6 * sr_tally_standard_error(&omega) + 1e-3 * exact))
-            test_fail(__FILE__, __LINE__, "triangle %d: %g +- %g, exactly %g", i, omega.mean, sr_tally_standard_error(&omega), exact);
+            test_fail(__FILE__, __LINE__, "triangle %d: %g +- %g, exactly %g", i, omega.mean,
+                      sr_tally_standard_error(&omega), exact);
     }
 }

@@ -8,8 +8,9 @@ static const double pi = 3.14159265358979323846;
 static double off_surface(struct sr_shape s, sr_vec3 p)
 {
     const struct sr_shape_quadric *q = s.model == &sr_shape_sphere ? &((const struct sr_shape_sphere *)s.self)->quadric
-                                     : s.model == &sr_shape_disk   ? &((const struct sr_shape_disk *)s.self)->quadric
-                                                                   : &((const struct sr_shape_cylinder *)s.self)->quadric;
+                                       : s.model == &sr_shape_disk
+                                           ? &((const struct sr_shape_disk *)s.self)->quadric
+                                           : &((const struct sr_shape_cylinder *)s.self)->quadric;
     double o[3], w[3] = {(double)p.x, (double)p.y, (double)p.z};
     for (int i = 0; i < 3; ++i)
         o[i] = q->to_object[i][0] * w[0] + q->to_object[i][1] * w[1] + q->to_object[i][2] * w[2] + q->to_object[i][3];
@@ -23,11 +24,16 @@ static double off_surface(struct sr_shape s, sr_vec3 p)
 static struct sr_shape quadric(int k, struct sr_transform t)
 {
     switch (k) {
-    case 0: return make_sphere(1.3f, placed(t));
-    case 1: return make_partial_sphere(1.3f, -0.7f, 1.1f, 210, placed(t));
-    case 2: return make_disk(0.4f, 1.2f, 0.3f, 320, placed(t));
-    case 3: return make_cylinder(0.8f, -0.4f, 1, 300, placed(t));
-    default: return make_disk(0, 1, 0, 360, placed(t));
+    case 0:
+        return make_sphere(1.3f, placed(t));
+    case 1:
+        return make_partial_sphere(1.3f, -0.7f, 1.1f, 210, placed(t));
+    case 2:
+        return make_disk(0.4f, 1.2f, 0.3f, 320, placed(t));
+    case 3:
+        return make_cylinder(0.8f, -0.4f, 1, 300, placed(t));
+    default:
+        return make_disk(0, 1, 0, 360, placed(t));
     }
 }
 
@@ -84,10 +90,12 @@ TEST(sphere_is_met_where_pythagoras_says)
         if (!s.model)
             continue;
         for (int j = 0; j < 200; ++j) {
-            sr_vec3 o = sr_mad(c, 3 * r, random_direction(&rng)), d = sr_normalize(sr_sub(sr_mad(c, 1.2f * r, random_direction(&rng)), o));
+            sr_vec3 o = sr_mad(c, 3 * r, random_direction(&rng)),
+                    d = sr_normalize(sr_sub(sr_mad(c, 1.2f * r, random_direction(&rng)), o));
             double w[3] = {(double)c.x - (double)o.x, (double)c.y - (double)o.y, (double)c.z - (double)o.z};
             double dd = (double)d.x * d.x + (double)d.y * d.y + (double)d.z * d.z;
-            double along = (w[0] * d.x + w[1] * d.y + w[2] * d.z) / dd, h2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2] - along * along * dd;
+            double along = (w[0] * d.x + w[1] * d.y + w[2] * d.z) / dd,
+                   h2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2] - along * along * dd;
             double r2 = (double)r * (double)r;
             float t;
             sr_vec2 hit;
@@ -113,7 +121,8 @@ TEST(quadric_coordinates_and_derivatives)
         for (int j = 0; j < 5; ++j) {
             double a = u + step[j][0], b = v + step[j][1], p[3], n[3];
             if (i % 3 == 0) {
-                double lo = acos((double)(-0.7f / 1.3f)), hi = acos((double)(1.1f / 1.3f)), theta = lo + b * (hi - lo), phi = a * 210 * pi / 180;
+                double lo = acos((double)(-0.7f / 1.3f)), hi = acos((double)(1.1f / 1.3f)), theta = lo + b * (hi - lo),
+                       phi = a * 210 * pi / 180;
                 n[0] = sin(theta) * cos(phi), n[1] = sin(theta) * sin(phi), n[2] = cos(theta);
                 for (int m = 0; m < 3; ++m)
                     p[m] = 1.3 * n[m];
@@ -127,7 +136,8 @@ TEST(quadric_coordinates_and_derivatives)
                 n[0] = cos(phi), n[1] = sin(phi), n[2] = 0;
             }
             sr_vec3 outer = {(float)(p[0] + 0.1 * n[0]), (float)(p[1] + 0.1 * n[1]), (float)(p[2] + 0.1 * n[2])};
-            sr_vec3 o = sr_transform_point(&t, outer), d = sr_transform_vector(&t, (sr_vec3){(float)-n[0], (float)-n[1], (float)-n[2]});
+            sr_vec3 o = sr_transform_point(&t, outer),
+                    d = sr_transform_vector(&t, (sr_vec3){(float)-n[0], (float)-n[1], (float)-n[2]});
             float at;
             sr_vec2 hit;
             EXPECT(s.model->intersect(s.self, 0, o, d, 0, 1, &at, &hit)); // t counts in lengths of d
@@ -137,8 +147,10 @@ TEST(quadric_coordinates_and_derivatives)
             EXPECT_NEAR(x[j].uv.y, b, 2e-6);
             EXPECT(sr_dot(x[j].n, d) < 0); // outside, under a mirror also
         }
-        sr_vec3 du = sr_scale((float)(0.5 / h), sr_sub(x[1].p, x[2].p)), dv = sr_scale((float)(0.5 / h), sr_sub(x[3].p, x[4].p));
-        sr_vec3 nu = sr_scale((float)(0.5 / h), sr_sub(x[1].n, x[2].n)), nv = sr_scale((float)(0.5 / h), sr_sub(x[3].n, x[4].n));
+        sr_vec3 du = sr_scale((float)(0.5 / h), sr_sub(x[1].p, x[2].p)),
+                dv = sr_scale((float)(0.5 / h), sr_sub(x[3].p, x[4].p));
+        sr_vec3 nu = sr_scale((float)(0.5 / h), sr_sub(x[1].n, x[2].n)),
+                nv = sr_scale((float)(0.5 / h), sr_sub(x[3].n, x[4].n));
         EXPECT(sr_length(sr_sub(du, x[0].dpdu)) < 5e-3f);
         EXPECT(sr_length(sr_sub(dv, x[0].dpdv)) < 5e-3f);
         EXPECT(sr_length(sr_sub(nu, x[0].dndu)) < 1e-2f);
@@ -181,7 +193,8 @@ TEST(patch_is_met_where_its_triangles_are)
             sr_vec3 p[3];
             for (int k = 0; k < 3; ++k) {
                 float a = c[k][0], b = c[k][1];
-                p[k] = sr_add(sr_add(sr_scale((1 - a) * (1 - b), q[0]), sr_scale(a * (1 - b), q[1])), sr_add(sr_scale((1 - a) * b, q[2]), sr_scale(a * b, q[3])));
+                p[k] = sr_add(sr_add(sr_scale((1 - a) * (1 - b), q[0]), sr_scale(a * (1 - b), q[1])),
+                              sr_add(sr_scale((1 - a) * b, q[2]), sr_scale(a * b, q[3])));
             }
             struct sr_shape_mesh m = {.P = {p, 3}};
             if (cast((struct sr_shape){&sr_shape_trianglemesh, &m}, o, d, &t, &hit) && t < nearest)
@@ -219,7 +232,8 @@ TEST(patch_derivatives)
             s.model->point(s.self, 0, (sr_vec2){0.3f + step[j][0], 0.6f + step[j][1]}, &x[j]);
         for (int j = 1; j < 5; ++j) { // first order: x(j) = x(0) + d/du du + d/dv dv
             float du = x[j].uv.x - x[0].uv.x, dv = x[j].uv.y - x[0].uv.y;
-            sr_vec3 p = sr_mad(sr_mad(x[0].p, du, x[0].dpdu), dv, x[0].dpdv), n = sr_mad(sr_mad(x[0].ns, du, x[0].dndu), dv, x[0].dndv);
+            sr_vec3 p = sr_mad(sr_mad(x[0].p, du, x[0].dpdu), dv, x[0].dpdv),
+                    n = sr_mad(sr_mad(x[0].ns, du, x[0].dndu), dv, x[0].dndv);
             EXPECT(sr_length(sr_sub(p, x[j].p)) < 3e-5f);
             EXPECT(sr_length(sr_sub(n, x[j].ns)) < 1e-4f);
         }
@@ -231,7 +245,8 @@ TEST(triangle_point_has_uv_frame_normals_and_face)
 {
     sr_vec3 P[4] = {{0, 0, 0}, {2, 0, 1}, {0, 3, 0.5f}, {9, 9, 9}};
     sr_vec2 uv[4] = {{0.1f, 0.2f}, {1.5f, 0.1f}, {0.4f, 2}, {0, 0}};
-    sr_vec3 N[4] = {{0.1f, 0, 1}, {0.3f, 0.2f, 1}, {-0.2f, 0.4f, 1}, {0, 0, 1}}, S[4] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}};
+    sr_vec3 N[4] = {{0.1f, 0, 1}, {0.3f, 0.2f, 1}, {-0.2f, 0.4f, 1}, {0, 0, 1}},
+            S[4] = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}};
     int32_t indices[6] = {3, 1, 2, 0, 1, 2}, faces[2] = {7, 11};
     for (int k = 0; k < 8; ++k) {
         struct sr_shape_mesh m = {.indices = SLICE(indices), .P = SLICE(P), .face_indices = SLICE(faces)};
@@ -249,7 +264,8 @@ TEST(triangle_point_has_uv_frame_normals_and_face)
             struct sr_point x, y;
             s.model->point(s.self, 1, hit, &x);
             s.model->point(s.self, 1, near, &y);
-            double exact[3], p[3] = {(double)x.p.x, (double)x.p.y, (double)x.p.z}, e[3] = {(double)x.p_error.x, (double)x.p_error.y, (double)x.p_error.z};
+            double exact[3], p[3] = {(double)x.p.x, (double)x.p.y, (double)x.p.z},
+                             e[3] = {(double)x.p_error.x, (double)x.p_error.y, (double)x.p_error.z};
             double b1 = (double)hit.x, b2 = (double)hit.y, b0 = 1 - b1 - b2;
             exact[0] = b0 * (double)P[0].x + b1 * (double)P[1].x + b2 * (double)P[2].x;
             exact[1] = b0 * (double)P[0].y + b1 * (double)P[1].y + b2 * (double)P[2].y;
@@ -280,11 +296,13 @@ TEST(orientation_follows_winding_mirror_reversal_and_shading_normals)
     for (int k = 0; k < 24; ++k) {
         bool is_mirrored = k & 1, is_reversed = k & 2, is_patch = k & 4;
         int shading = k / 8; // none, up, down
-        struct sr_shape_placement place = {sr_transform_scale((sr_vec3){is_mirrored ? -1.0f : 1.0f, 1, 1}), is_reversed};
+        struct sr_shape_placement place = {sr_transform_scale((sr_vec3){is_mirrored ? -1.0f : 1.0f, 1, 1}),
+                                           is_reversed};
         struct sr_slice N = {shading == 1 ? Nup : Ndown, shading ? (is_patch ? 4u : 3u) : 0};
         struct sr_shape_mesh triangle = {.P = {P, 3}, .N = N};
         struct sr_shape_patches patch = {.P = {P, 4}, .N = N};
-        struct sr_shape s = is_patch ? PREPARE(sr_shape_bilinearmesh, &patch, place) : PREPARE(sr_shape_trianglemesh, &triangle, place);
+        struct sr_shape s =
+            is_patch ? PREPARE(sr_shape_bilinearmesh, &patch, place) : PREPARE(sr_shape_trianglemesh, &triangle, place);
         // a mirror in x turns the winding in the world, and flip_normals turns it back: only reversal is left
         float expected = (shading == 2 ? -1.0f : 1.0f) * (is_reversed ? -1.0f : 1.0f);
         struct sr_point x;
@@ -302,7 +320,8 @@ TEST(orientation_follows_winding_mirror_reversal_and_shading_normals)
     }
     for (int k = 0; k < 4; ++k) { // quadrics: away from the centre, from the axis, +z
         struct sr_shape_placement place = {sr_transform_scale((sr_vec3){1, k & 1 ? -2.0f : 2.0f, 1}), k & 2};
-        struct sr_shape s[3] = {make_sphere(1, place), make_cylinder(1, -1, 1, 360, place), make_disk(0, 1, 0, 360, place)};
+        struct sr_shape s[3] = {make_sphere(1, place), make_cylinder(1, -1, 1, 360, place),
+                                make_disk(0, 1, 0, 360, place)};
         for (int i = 0; i < 3; ++i) {
             struct sr_shape_sample y;
             EXPECT(s[i].model->sample(s[i].self, 0, NULL, (sr_vec2){0.2f, 0.3f}, &y));
@@ -425,12 +444,14 @@ TEST(wrong_meshes_are_refused_with_what_was_expected)
     int32_t good[3] = {0, 1, 2}, high[3] = {0, 1, 3}, low[3] = {0, -1, 2}, four[4] = {0, 1, 2, 0};
     EXPECT(try_mesh((struct sr_shape_mesh){.indices = SLICE(good), .P = SLICE(P)}, "") == SR_OK);
     EXPECT(try_mesh((struct sr_shape_mesh){.P = SLICE(P)}, "") == SR_OK);
-    EXPECT(try_mesh((struct sr_shape_mesh){.indices = SLICE(high), .P = SLICE(P)}, "expected 0 to 2") == SR_ERROR_INPUT);
+    EXPECT(try_mesh((struct sr_shape_mesh){.indices = SLICE(high), .P = SLICE(P)}, "expected 0 to 2") ==
+           SR_ERROR_INPUT);
     EXPECT(try_mesh((struct sr_shape_mesh){.indices = SLICE(low), .P = SLICE(P)}, "index -1") == SR_ERROR_INPUT);
     EXPECT(try_mesh((struct sr_shape_mesh){.indices = SLICE(four), .P = SLICE(P)}, "multiple of 3") == SR_ERROR_INPUT);
     EXPECT(try_mesh((struct sr_shape_mesh){.indices = SLICE(good), .P = SLICE(bad)}, "finite") == SR_ERROR_INPUT);
     EXPECT(try_mesh((struct sr_shape_mesh){.indices = SLICE(good)}, "\"P\"") == SR_ERROR_INPUT);
-    EXPECT(try_mesh((struct sr_shape_mesh){.indices = SLICE(good), .P = SLICE(P), .N = {P, 2}}, "expected 3") == SR_ERROR_INPUT);
+    EXPECT(try_mesh((struct sr_shape_mesh){.indices = SLICE(good), .P = SLICE(P), .N = {P, 2}}, "expected 3") ==
+           SR_ERROR_INPUT);
     struct sr_shape_sphere s = {.radius = -1, .z_min = NAN, .z_max = NAN, .phi_max = 360};
     struct sr_error error = {0};
     struct sr_shape_placement p = here();
@@ -447,7 +468,8 @@ TEST(planar_quads_split_into_the_same_surface)
     EXPECT_EQUAL_INT(sr_shape_split_planar_quads(&all, &test_arena, &triangles, &rest), 1);
     EXPECT_EQUAL_INT(triangles.indices.count, 6);
     EXPECT_EQUAL_INT(rest.indices.count, 4);
-    struct sr_shape t = PREPARE(sr_shape_trianglemesh, &triangles, here()), r = PREPARE(sr_shape_bilinearmesh, &rest, here());
+    struct sr_shape t = PREPARE(sr_shape_trianglemesh, &triangles, here()),
+                    r = PREPARE(sr_shape_bilinearmesh, &rest, here());
     struct sr_shape a = PREPARE(sr_shape_bilinearmesh, &all, here());
     EXPECT_EQUAL_INT(r.model->primitive_count(r.self), 1);
     struct sr_rng rng = sr_rng_seed(8, 1);
