@@ -14,13 +14,19 @@ struct coated_diffuse {
 static const struct sr_param params[] = {
     {SR_PARAM_ALBEDO_TEXTURE, "reflectance", "1", 0, 1, 0.5, OFFSET(reflectance.texture), "of the base"},
     {SR_PARAM_FLOAT_TEXTURE, "roughness", "1", 0, INFINITY, 0, OFFSET(ggx.roughness), "of the coat, both directions"},
-    {SR_PARAM_FLOAT_TEXTURE, "uroughness", "1", 0, INFINITY, NAN, OFFSET(ggx.u_roughness), "of the coat, along the tangent"},
-    {SR_PARAM_FLOAT_TEXTURE, "vroughness", "1", 0, INFINITY, NAN, OFFSET(ggx.v_roughness), "of the coat, across the tangent"},
-    {SR_PARAM_BOOL, "remaproughness", "1", 0, 1, 1, OFFSET(remap), "alpha is the root of roughness; else roughness itself"},
-    {SR_PARAM_FLOAT_TEXTURE, "thickness", "1", 0, INFINITY, 0.01, OFFSET(thickness.texture), "of the coat, in mean free paths"},
-    {SR_PARAM_UNBOUNDED_TEXTURE, "eta", "1", 0, INFINITY, 1.5, OFFSET(eta.texture), "index of the coat over index outside"},
+    {SR_PARAM_FLOAT_TEXTURE, "uroughness", "1", 0, INFINITY, NAN, OFFSET(ggx.u_roughness),
+     "of the coat, along the tangent"},
+    {SR_PARAM_FLOAT_TEXTURE, "vroughness", "1", 0, INFINITY, NAN, OFFSET(ggx.v_roughness),
+     "of the coat, across the tangent"},
+    {SR_PARAM_BOOL, "remaproughness", "1", 0, 1, 1, OFFSET(remap),
+     "alpha is the root of roughness; else roughness itself"},
+    {SR_PARAM_FLOAT_TEXTURE, "thickness", "1", 0, INFINITY, 0.01, OFFSET(thickness.texture),
+     "of the coat, in mean free paths"},
+    {SR_PARAM_UNBOUNDED_TEXTURE, "eta", "1", 0, INFINITY, 1.5, OFFSET(eta.texture),
+     "index of the coat over index outside"},
     {SR_PARAM_FLOAT_TEXTURE, "g", "1", -1, 1, 0, OFFSET(g.texture), "Henyey-Greenstein asymmetry in the coat"},
-    {SR_PARAM_ALBEDO_TEXTURE, "albedo", "1", 0, 1, 0, OFFSET(albedo.texture), "single-scattering albedo in the coat; 0: clear"},
+    {SR_PARAM_ALBEDO_TEXTURE, "albedo", "1", 0, 1, 0, OFFSET(albedo.texture),
+     "single-scattering albedo in the coat; 0: clear"},
     {SR_PARAM_INT, "maxdepth", "1", 1, 1e6, 10, OFFSET(max_depth), "longest walk between the layers"},
     {SR_PARAM_INT, "nsamples", "1", 1, 1e6, 1, OFFSET(sample_count), "walks of one evaluation"},
     {0},
@@ -58,5 +64,9 @@ static void bsdf(const void *self, const struct sr_material_context *c, struct s
 }
 
 const struct sr_material_model sr_material_coated_diffuse = {
-    .name = "coateddiffuse", .params = params, .size = sizeof(struct coated_diffuse), .prepare = prepare, .bsdf = bsdf,
+    .name = "coateddiffuse",
+    .params = params,
+    .size = sizeof(struct coated_diffuse),
+    .prepare = prepare,
+    .bsdf = bsdf,
 };

@@ -10,13 +10,16 @@ struct conductor {
 
 #define OFFSET(member) offsetof(struct conductor, member)
 static const struct sr_param params[] = {
-    {SR_PARAM_UNBOUNDED_TEXTURE, "eta", "1", 0, INFINITY, NAN, OFFSET(metal.eta.texture), "index of refraction; copper"},
+    {SR_PARAM_UNBOUNDED_TEXTURE, "eta", "1", 0, INFINITY, NAN, OFFSET(metal.eta.texture),
+     "index of refraction; copper"},
     {SR_PARAM_UNBOUNDED_TEXTURE, "k", "1", 0, INFINITY, NAN, OFFSET(metal.k.texture), "absorption index; copper"},
-    {SR_PARAM_ALBEDO_TEXTURE, "reflectance", "1", 0, 1, NAN, OFFSET(metal.reflectance.texture), "at normal incidence, in place of eta and k"},
+    {SR_PARAM_ALBEDO_TEXTURE, "reflectance", "1", 0, 1, NAN, OFFSET(metal.reflectance.texture),
+     "at normal incidence, in place of eta and k"},
     {SR_PARAM_FLOAT_TEXTURE, "roughness", "1", 0, INFINITY, 0, OFFSET(ggx.roughness), "of both directions"},
     {SR_PARAM_FLOAT_TEXTURE, "uroughness", "1", 0, INFINITY, NAN, OFFSET(ggx.u_roughness), "along the tangent"},
     {SR_PARAM_FLOAT_TEXTURE, "vroughness", "1", 0, INFINITY, NAN, OFFSET(ggx.v_roughness), "across the tangent"},
-    {SR_PARAM_BOOL, "remaproughness", "1", 0, 1, 1, OFFSET(remap), "alpha is the root of roughness; else roughness itself"},
+    {SR_PARAM_BOOL, "remaproughness", "1", 0, 1, 1, OFFSET(remap),
+     "alpha is the root of roughness; else roughness itself"},
     {0},
 };
 
@@ -38,5 +41,9 @@ static void bsdf(const void *self, const struct sr_material_context *c, struct s
 }
 
 const struct sr_material_model sr_material_conductor = {
-    .name = "conductor", .params = params, .size = sizeof(struct conductor), .prepare = prepare, .bsdf = bsdf,
+    .name = "conductor",
+    .params = params,
+    .size = sizeof(struct conductor),
+    .prepare = prepare,
+    .bsdf = bsdf,
 };

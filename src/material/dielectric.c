@@ -16,7 +16,8 @@ static const struct sr_param params[] = {
     {SR_PARAM_FLOAT_TEXTURE, "roughness", "1", 0, INFINITY, 0, OFFSET(ggx.roughness), "of both directions"},
     {SR_PARAM_FLOAT_TEXTURE, "uroughness", "1", 0, INFINITY, NAN, OFFSET(ggx.u_roughness), "along the tangent"},
     {SR_PARAM_FLOAT_TEXTURE, "vroughness", "1", 0, INFINITY, NAN, OFFSET(ggx.v_roughness), "across the tangent"},
-    {SR_PARAM_BOOL, "remaproughness", "1", 0, 1, 1, OFFSET(remap), "alpha is the root of roughness; else roughness itself"},
+    {SR_PARAM_BOOL, "remaproughness", "1", 0, 1, 1, OFFSET(remap),
+     "alpha is the root of roughness; else roughness itself"},
     {0},
 };
 
@@ -39,5 +40,9 @@ static void bsdf(const void *self, const struct sr_material_context *c, struct s
 }
 
 const struct sr_material_model sr_material_dielectric = {
-    .name = "dielectric", .params = params, .size = sizeof(struct dielectric), .prepare = prepare, .bsdf = bsdf,
+    .name = "dielectric",
+    .params = params,
+    .size = sizeof(struct dielectric),
+    .prepare = prepare,
+    .bsdf = bsdf,
 };

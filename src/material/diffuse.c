@@ -29,5 +29,9 @@ static void bsdf(const void *self, const struct sr_material_context *c, struct s
 }
 
 const struct sr_material_model sr_material_diffuse = {
-    .name = "diffuse", .params = params, .size = sizeof(struct diffuse), .prepare = prepare, .bsdf = bsdf,
+    .name = "diffuse",
+    .params = params,
+    .size = sizeof(struct diffuse),
+    .prepare = prepare,
+    .bsdf = bsdf,
 };

@@ -8,10 +8,10 @@ struct diffuse_transmission {
 };
 
 static const struct sr_param params[] = {
-    {SR_PARAM_ALBEDO_TEXTURE, "reflectance", "1", 0, 1, 0.25, offsetof(struct diffuse_transmission, reflectance.texture),
-     "share that leaves to the side where it came from"},
-    {SR_PARAM_ALBEDO_TEXTURE, "transmittance", "1", 0, 1, 0.25, offsetof(struct diffuse_transmission, transmittance.texture),
-     "share that leaves to the other side"},
+    {SR_PARAM_ALBEDO_TEXTURE, "reflectance", "1", 0, 1, 0.25,
+     offsetof(struct diffuse_transmission, reflectance.texture), "share that leaves to the side where it came from"},
+    {SR_PARAM_ALBEDO_TEXTURE, "transmittance", "1", 0, 1, 0.25,
+     offsetof(struct diffuse_transmission, transmittance.texture), "share that leaves to the other side"},
     {SR_PARAM_FLOAT, "scale", "1", 0, INFINITY, 1, offsetof(struct diffuse_transmission, scale), "factor of both"},
     {0},
 };

@@ -17,5 +17,8 @@ static void bsdf(const void *self, const struct sr_material_context *c, struct s
 }
 
 const struct sr_material_model sr_material_interface = {
-    .name = "interface", .params = params, .size = sizeof(struct interface), .bsdf = bsdf,
+    .name = "interface",
+    .params = params,
+    .size = sizeof(struct interface),
+    .bsdf = bsdf,
 };

@@ -11,7 +11,8 @@ struct mix {
 
 static const struct sr_param params[] = {
     {SR_PARAM_MATERIALS, "materials", "1", 0, 0, NAN, offsetof(struct mix, materials), "names of the two materials"},
-    {SR_PARAM_FLOAT_TEXTURE, "amount", "1", -INFINITY, INFINITY, 0.5, offsetof(struct mix, amount.texture), "share of the second"},
+    {SR_PARAM_FLOAT_TEXTURE, "amount", "1", -INFINITY, INFINITY, 0.5, offsetof(struct mix, amount.texture),
+     "share of the second"},
     {0},
 };
 
@@ -41,5 +42,9 @@ static const struct sr_material *choose(const void *self, struct sr_material_con
 }
 
 const struct sr_material_model sr_material_mix = {
-    .name = "mix", .params = params, .size = sizeof(struct mix), .prepare = prepare, .choose = choose,
+    .name = "mix",
+    .params = params,
+    .size = sizeof(struct mix),
+    .prepare = prepare,
+    .choose = choose,
 };

@@ -6,11 +6,12 @@
  *     dp'/du = dp/du + (dd/du) ns + d dns/du          and the same for v;          ns' = dp'/du x dp'/dv, normalised
  *
  * dd/du is a difference over half a footprint, so that detail finer than a pixel is not taken for slopes; without a
- * footprint over 0.0005. Pharr, Jakob & Humphreys 2023, 10.5.3. Where the shading normal is interpolated, the derivatives
- * that count are those of the smooth surface: dp/du and dp/dv less their parts along ns.
+ * footprint over 0.0005. Pharr, Jakob & Humphreys 2023, 10.5.3. Where the shading normal is interpolated, the
+ * derivatives that count are those of the smooth surface: dp/du and dp/dv less their parts along ns.
  *
- * Normal map: 2 rgb - 1 is the normal in the frame of tangent, bitangent and ns; texels are numbers, not light, so bytes
- * are read as byte / 255 whatever their decode table says. If a material has both maps the normal map is used, as in pbrt.
+ * Normal map: 2 rgb - 1 is the normal in the frame of tangent, bitangent and ns; texels are numbers, not light, so
+ * bytes are read as byte / 255 whatever their decode table says. If a material has both maps the normal map is used, as
+ * in pbrt.
  *
  * In both ns' stays on the side of the geometric normal n. */
 #include "material/private.h"
@@ -98,7 +99,8 @@ static inline struct sr_frame frame_at(const struct sr_point *x)
     if (SR_UNLIKELY(!(length2 > 1e-10f * sr_length2(x->dpdus)) || !(length2 < INFINITY)))
         return sr_frame_from_z(z);
     sr_vec3 t = sr_scale(1 / sqrtf(length2), across);
-    return (struct sr_frame){.x = t, .y = {z.y * t.z - z.z * t.y, z.z * t.x - z.x * t.z, z.x * t.y - z.y * t.x}, .z = z};
+    return (struct sr_frame){
+        .x = t, .y = {z.y * t.z - z.z * t.y, z.z * t.x - z.x * t.z, z.x * t.y - z.y * t.x}, .z = z};
 }
 
 void sr_material_shade(const struct sr_material *material, struct sr_point *x, sr_vec3 wo, float u, uint32_t seed,

@@ -32,5 +32,9 @@ static void bsdf(const void *self, const struct sr_material_context *c, struct s
 }
 
 const struct sr_material_model sr_material_thin_dielectric = {
-    .name = "thindielectric", .params = params, .size = sizeof(struct thin_dielectric), .prepare = prepare, .bsdf = bsdf,
+    .name = "thindielectric",
+    .params = params,
+    .size = sizeof(struct thin_dielectric),
+    .prepare = prepare,
+    .bsdf = bsdf,
 };

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The list of sensors, and what the projective ones share.
  *
- * The screen is the plane z = 1 in front of the camera, in units in which the image's shorter side goes from -1 to 1; an
- * image wider than high goes from -aspect to aspect in x, one higher than wide from -1/aspect to 1/aspect in y. */
+ * The screen is the plane z = 1 in front of the camera, in units in which the image's shorter side goes from -1 to 1;
+ * an image wider than high goes from -aspect to aspect in x, one higher than wide from -1/aspect to 1/aspect in y. */
 #include "sensor/private.h"
 
 #include <string.h>
@@ -59,7 +59,8 @@ sr_status projection_prepare(struct projection *p, struct sr_sensor_raster raste
     if (p->screen_window.count == 4)
         memcpy(window, p->screen_window.data, sizeof window);
     else if (p->screen_window.count != 0)
-        return sr_fail(error, SR_ERROR_INPUT, "screenwindow has four numbers x0 x1 y0 y1, not %u", (unsigned)p->screen_window.count);
+        return sr_fail(error, SR_ERROR_INPUT, "screenwindow has four numbers x0 x1 y0 y1, not %u",
+                       (unsigned)p->screen_window.count);
     if (window[0] == window[1] || window[2] == window[3])
         return sr_fail(error, SR_ERROR_INPUT, "screenwindow is empty");
     p->x0 = window[0];

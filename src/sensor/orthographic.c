@@ -64,5 +64,9 @@ static bool ray(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_time, 
 }
 
 const struct sr_sensor_model sr_sensor_orthographic = {
-    .name = "orthographic", .params = params, .size = sizeof(struct orthographic), .prepare = prepare, .ray = ray,
+    .name = "orthographic",
+    .params = params,
+    .size = sizeof(struct orthographic),
+    .prepare = prepare,
+    .ray = ray,
 };

@@ -4,18 +4,18 @@
  *     d ~ k (x, y, 1 / k) - l / F,      k = tan(fov / 2)
  *
  * (x, y) on the screen [1], l on the lens [m], F the distance to the sharp plane [m]: all rays of one pixel meet in
- * F (k x, k y, 1). fov spans the image's shorter side. A ray brings its radiance with weight 1: the falloff of cos^4 that a
- * flat film has is no part of this camera, its pixels are radiances. Cook, Porter & Carpenter 1984. */
+ * F (k x, k y, 1). fov spans the image's shorter side. A ray brings its radiance with weight 1: the falloff of cos^4
+ * that a flat film has is no part of this camera, its pixels are radiances. Cook, Porter & Carpenter 1984. */
 #include "sensor/private.h"
 
 struct perspective {
     struct sr_sensor_common common;
     struct projection projection;
-    float fov; // [deg] in the file
-    sr_vec3 origin;          // [m] in the world
-    sr_vec3 lens_x, lens_y;  // [m] from the lens' middle to its rim
-    sr_vec3 d0, dx, dy;      // direction = d0 + x dx + y dy, x and y in pixels; length 1 along the camera's axis
-    float inv_focal;         // [1/m]
+    float fov;              // [deg] in the file
+    sr_vec3 origin;         // [m] in the world
+    sr_vec3 lens_x, lens_y; // [m] from the lens' middle to its rim
+    sr_vec3 d0, dx, dy;     // direction = d0 + x dx + y dy, x and y in pixels; length 1 along the camera's axis
+    float inv_focal;        // [1/m]
 };
 
 #define OFFSET(member) offsetof(struct perspective, member)
@@ -73,5 +73,9 @@ static bool ray(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_time, 
 }
 
 const struct sr_sensor_model sr_sensor_perspective = {
-    .name = "perspective", .params = params, .size = sizeof(struct perspective), .prepare = prepare, .ray = ray,
+    .name = "perspective",
+    .params = params,
+    .size = sizeof(struct perspective),
+    .prepare = prepare,
+    .ray = ray,
 };

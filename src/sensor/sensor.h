@@ -25,7 +25,7 @@ struct sr_sensor_model {
     size_t size;
     sr_status (*prepare)(void *self, struct sr_sensor_raster raster, const struct sr_transform *camera_to_world,
                          struct sr_arena *arena, struct sr_error *error);
-    /* raster: position in pixels, (0,0) the upper left corner; u_lens, u_time uniform. false: no light comes this way */
+    /* raster: position in pixels, (0,0) the upper left corner; u_lens, u_time uniform. false: no light comes */
     bool (*ray)(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_time, struct sr_sensor_ray *out);
 };
 extern const struct sr_sensor_model *const sr_sensor_models[]; // ends with NULL
@@ -36,8 +36,8 @@ struct sr_sensor {
     const void *self;
 };
 
-/* Common to the projective cameras (perspective, orthographic); their params tables list these too. Each camera's struct
- * begins with struct sr_sensor_common. */
+/* Common to the projective cameras (perspective, orthographic); their params tables list these too. Each camera's
+ * struct begins with struct sr_sensor_common. */
 struct sr_sensor_common {
     float shutter_open, shutter_close; // [s]
     struct sr_transform camera_to_world;

@@ -3,7 +3,7 @@
  *
  *     equirectangular   theta = pi y / height from above, phi = 2 pi x / width:
  *                       d = (sin theta cos phi, cos theta, sin theta sin phi)
- *     equalarea         Clarberg's octahedral square (2008), its pole z turned to y: each pixel sees as much solid angle */
+ *     equalarea         Clarberg's octahedral square (2008), its pole z turned to y: all pixels see alike [sr] */
 #include "sensor/private.h"
 
 enum { EQUAL_AREA, EQUIRECTANGULAR };
@@ -11,7 +11,7 @@ enum { EQUAL_AREA, EQUIRECTANGULAR };
 struct spherical {
     struct sr_sensor_common common;
     int32_t mapping;
-    sr_vec3 origin; // [m] in the world
+    sr_vec3 origin;              // [m] in the world
     float inv_width, inv_height; // [1/pixel]
 };
 
@@ -73,5 +73,9 @@ static bool ray(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_time, 
 }
 
 const struct sr_sensor_model sr_sensor_spherical = {
-    .name = "spherical", .params = params, .size = sizeof(struct spherical), .prepare = prepare, .ray = ray,
+    .name = "spherical",
+    .params = params,
+    .size = sizeof(struct spherical),
+    .prepare = prepare,
+    .ray = ray,
 };

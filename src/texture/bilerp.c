@@ -14,9 +14,15 @@ struct bilerp_spectrum {
 };
 
 #define FLOAT_ROW(member, initial)                                                                                     \
-    {SR_PARAM_FLOAT, #member, "1", -INFINITY, INFINITY, initial, offsetof(struct bilerp_float, member), "at the corner (s,t)"}
+    {                                                                                                                  \
+        SR_PARAM_FLOAT, #member, "1", -INFINITY, INFINITY, initial, offsetof(struct bilerp_float, member),             \
+            "at the corner (s,t)"                                                                                      \
+    }
 #define SPECTRUM_ROW(member, initial)                                                                                  \
-    {SR_PARAM_ALBEDO, #member, "1", 0, INFINITY, initial, offsetof(struct bilerp_spectrum, member), "at the corner (s,t)"}
+    {                                                                                                                  \
+        SR_PARAM_ALBEDO, #member, "1", 0, INFINITY, initial, offsetof(struct bilerp_spectrum, member),                 \
+            "at the corner (s,t)"                                                                                      \
+    }
 static const struct sr_param params_float[] = {
     FLOAT_ROW(v00, 0), FLOAT_ROW(v01, 1), FLOAT_ROW(v10, 0), FLOAT_ROW(v11, 1), {0},
 };
@@ -40,15 +46,17 @@ static float eval_float(const void *self, const struct sr_point *x)
 {
     const struct bilerp_float *b = self;
     sr_vec2 st = sr_mapping_apply(&b->mapping, x).st;
-    return (1 - st.x) * (1 - st.y) * b->v00 + (1 - st.x) * st.y * b->v01 + st.x * (1 - st.y) * b->v10 + st.x * st.y * b->v11;
+    return (1 - st.x) * (1 - st.y) * b->v00 + (1 - st.x) * st.y * b->v01 + st.x * (1 - st.y) * b->v10 +
+           st.x * st.y * b->v11;
 }
 
 static sr_spectrum eval_spectrum(const void *self, const struct sr_point *x, const struct sr_wavelengths *w)
 {
     const struct bilerp_spectrum *b = self;
     sr_vec2 st = sr_mapping_apply(&b->mapping, x).st;
-    return (1 - st.x) * (1 - st.y) * sr_spd_eval(&b->v00, w->lambda) + (1 - st.x) * st.y * sr_spd_eval(&b->v01, w->lambda) +
-           st.x * (1 - st.y) * sr_spd_eval(&b->v10, w->lambda) + st.x * st.y * sr_spd_eval(&b->v11, w->lambda);
+    return (1 - st.x) * (1 - st.y) * sr_spd_eval(&b->v00, w->lambda) +
+           (1 - st.x) * st.y * sr_spd_eval(&b->v01, w->lambda) + st.x * (1 - st.y) * sr_spd_eval(&b->v10, w->lambda) +
+           st.x * st.y * sr_spd_eval(&b->v11, w->lambda);
 }
 
 const struct sr_texture_model sr_texture_bilerp_float = {

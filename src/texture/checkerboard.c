@@ -17,7 +17,9 @@ struct checkerboard {
 
 #define OFFSET(member) offsetof(struct checkerboard, member)
 #define DIMENSION_ROW                                                                                                  \
-    {SR_PARAM_INT, "dimension", "1", 2, 3, 2, OFFSET(dimension), "2: cells in the plane; 3: cells in space"}
+    {                                                                                                                  \
+        SR_PARAM_INT, "dimension", "1", 2, 3, 2, OFFSET(dimension), "2: cells in the plane; 3: cells in space"         \
+    }
 static const struct sr_param params_float[] = {
     DIMENSION_ROW,
     {SR_PARAM_FLOAT_TEXTURE, "tex1", "1", -INFINITY, INFINITY, 1, OFFSET(tex1), "of the cell at the origin"},

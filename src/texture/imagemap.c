@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /* An image over the surface.
  *
- * (s, t) of the mapping; t counts upward and rows of texels downward, so the image is read at (s, 1 - t). Texel (i, j) of a
- * level has its centre at ((i + 1/2) / width, (j + 1/2) / height).
+ * (s, t) of the mapping; t counts upward and rows of texels downward, so the image is read at (s, 1 - t). Texel (i, j)
+ * of a level has its centre at ((i + 1/2) / width, (j + 1/2) / height).
  *
  *     level = levels - 1 + log2(width of the footprint),   width = 2 max(|dsdx|, |dsdy|, |dtdx|, |dtdy|)
  *
- * point and bilinear read the level rounded down, trilinear mixes it with the next, as pbrt does (Pharr, Jakob & Humphreys
- * 2023, 10.4). "ewa" is not the elliptical weighted average of Heckbert 1989 itself: trilinear lookups as wide as the
- * ellipse's minor axis are spread along its major axis with the same Gaussian weights exp(-2 r^2), no more of them than
- * maxanisotropy; for a round footprint it equals trilinear.
+ * point and bilinear read the level rounded down, trilinear mixes it with the next (below level 1 it reads the
+ * image itself), as pbrt does (Pharr, Jakob & Humphreys 2023, 10.4). "ewa" is not the elliptical weighted average of Heckbert 1989 itself: trilinear lookups as
+ * wide as the ellipse's minor axis are spread along its major axis with the same Gaussian weights exp(-2 r^2), no more
+ * of them than maxanisotropy; for a round footprint it equals trilinear.
  *
  * Spectrum textures interpolate the texels' curves (see pyramid.c); the wrap "octahedralsphere" is that of equal-area
- * environment maps, where leaving the square over an edge means to enter it over the same edge, mirrored at its middle. */
+ * environment maps, where leaving the square over an edge means to enter it over the same edge, mirrored in the middle. */
 #include "texture/private.h"
 #include "texture/pyramid.h"
 
@@ -40,7 +40,8 @@ static const struct sr_param params[] = {
     {SR_PARAM_STRING, "encoding", "1", 0, 0, 0, OFFSET(encoding), "sRGB"},
     {SR_PARAM_ENUM, "filter", "1", 0, 3, 0, OFFSET(filter), "bilinear|point|trilinear|ewa"},
     {SR_PARAM_ENUM, "wrap", "1", 0, 3, 0, OFFSET(wrap), "repeat|clamp|black|octahedralsphere"},
-    {SR_PARAM_FLOAT, "maxanisotropy", "1", 1, INFINITY, 8, OFFSET(max_anisotropy), "ewa: greatest ratio of the ellipse's axes"},
+    {SR_PARAM_FLOAT, "maxanisotropy", "1", 1, INFINITY, 8, OFFSET(max_anisotropy),
+     "ewa: greatest ratio of the ellipse's axes"},
     {SR_PARAM_FLOAT, "scale", "1", -INFINITY, INFINITY, 1, OFFSET(scale), "factor of the texels"},
     {SR_PARAM_BOOL, "invert", "1", 0, 1, 0, OFFSET(invert), "1 - value, after scale"},
     {0},
@@ -157,7 +158,7 @@ static sr_spectrum read_width(const struct lookup *q, sr_vec2 st, float width)
     const struct imagemap *m = q->map;
     uint32_t last = m->pyramid.count - 1;
     float cells = width * (float)(1u << last); // level = log2 of it
-    if (SR_LIKELY(!(cells >= 2)))           // level 0, or NaN
+    if (SR_LIKELY(!(cells >= 2)))              // level 0, or NaN
         if (m->filter < FILTER_TRILINEAR || !(cells > 1))
             return read_level(q, 0, st);
     float level = greater(log2f(cells), 0);
@@ -228,8 +229,8 @@ static sr_status prepare_for(struct imagemap *m, bool is_float, struct sr_textur
         m->white = sr_spd_from_rgb_illuminant(m->texels.space, (struct sr_rgb){1, 1, 1});
     sr_status status = sr_mapping_prepare(&m->mapping, error);
     if (status == SR_OK)
-        status = sr_pyramid_build(&m->pyramid, &m->texels, is_float, (struct sr_pyramid_adjust){m->scale, m->invert}, use,
-                                  arena, error);
+        status = sr_pyramid_build(&m->pyramid, &m->texels, is_float, (struct sr_pyramid_adjust){m->scale, m->invert},
+                                  use, arena, error);
     return status;
 }
 

@@ -7,7 +7,8 @@
  *     planar        s = udelta + q . v1                      t = vdelta + q . v2
  *
  * all [1], of q = (x, y, z), the point in the texture's space. Derivatives by the chain rule: dsdx = (ds/dq) . dqdx.
- * Pharr, Jakob & Humphreys 2023, 10.2. On the axis of the sphere or cylinder s jumps and the footprint is taken as 0. */
+ * Pharr, Jakob & Humphreys 2023, 10.2. On the axis of the sphere or cylinder s jumps and the footprint is taken as 0.
+ * */
 #include "texture/private.h"
 
 #define OFFSET(member) offsetof(struct sr_mapping, member)
@@ -30,7 +31,8 @@ static bool is_given(sr_vec3 v)
 sr_status sr_mapping_prepare(struct sr_mapping *m, struct sr_error *error)
 {
     if (m->kind < SR_MAPPING_UV || m->kind > SR_MAPPING_PLANAR)
-        return sr_fail(error, SR_ERROR_INPUT, "a texture's mapping is unknown: expected uv, spherical, cylindrical or planar");
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "a texture's mapping is unknown: expected uv, spherical, cylindrical or planar");
     if (!is_given(m->v1))
         m->v1 = (sr_vec3){1, 0, 0};
     if (!is_given(m->v2))

@@ -8,7 +8,9 @@ struct mix {
 };
 
 #define AMOUNT_ROW                                                                                                     \
-    {SR_PARAM_FLOAT_TEXTURE, "amount", "1", -INFINITY, INFINITY, 0.5, offsetof(struct mix, amount), "share of tex2"}
+    {                                                                                                                  \
+        SR_PARAM_FLOAT_TEXTURE, "amount", "1", -INFINITY, INFINITY, 0.5, offsetof(struct mix, amount), "share of tex2" \
+    }
 static const struct sr_param params_float[] = {
     {SR_PARAM_FLOAT_TEXTURE, "tex1", "1", -INFINITY, INFINITY, 0, offsetof(struct mix, tex1), "where amount is 0"},
     {SR_PARAM_FLOAT_TEXTURE, "tex2", "1", -INFINITY, INFINITY, 1, offsetof(struct mix, tex2), "where amount is 1"},

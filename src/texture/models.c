@@ -7,12 +7,18 @@
 #include <string.h>
 
 const struct sr_texture_model *const sr_texture_models[] = {
-    &sr_texture_constant_model_float, &sr_texture_constant_model_spectrum,
-    &sr_texture_scale_float,          &sr_texture_scale_spectrum,
-    &sr_texture_mix_float,            &sr_texture_mix_spectrum,
-    &sr_texture_bilerp_float,         &sr_texture_bilerp_spectrum,
-    &sr_texture_checkerboard_float,   &sr_texture_checkerboard_spectrum,
-    &sr_texture_imagemap_float,       &sr_texture_imagemap_spectrum,
+    &sr_texture_constant_model_float,
+    &sr_texture_constant_model_spectrum,
+    &sr_texture_scale_float,
+    &sr_texture_scale_spectrum,
+    &sr_texture_mix_float,
+    &sr_texture_mix_spectrum,
+    &sr_texture_bilerp_float,
+    &sr_texture_bilerp_spectrum,
+    &sr_texture_checkerboard_float,
+    &sr_texture_checkerboard_spectrum,
+    &sr_texture_imagemap_float,
+    &sr_texture_imagemap_spectrum,
     NULL,
 };
 

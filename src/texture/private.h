@@ -7,10 +7,10 @@
 
 extern const struct sr_texture_model sr_texture_constant_model_float, sr_texture_constant_model_spectrum,
     sr_texture_scale_float, sr_texture_scale_spectrum, sr_texture_mix_float, sr_texture_mix_spectrum,
-    sr_texture_bilerp_float, sr_texture_bilerp_spectrum, sr_texture_checkerboard_float, sr_texture_checkerboard_spectrum,
-    sr_texture_imagemap_float, sr_texture_imagemap_spectrum;
+    sr_texture_bilerp_float, sr_texture_bilerp_spectrum, sr_texture_checkerboard_float,
+    sr_texture_checkerboard_spectrum, sr_texture_imagemap_float, sr_texture_imagemap_spectrum;
 
-/* The greater and the smaller of two; b where a is NaN. (fmaxf, which must know better about NaN, is a call into libm.) */
+/* The greater and the smaller of two; b where a is NaN. (fmaxf promises more about NaN and is a call into libm.) */
 static inline float greater(float a, float b)
 {
     return a > b ? a : b;

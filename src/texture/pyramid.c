@@ -1,19 +1,21 @@
 /* SPDX-License-Identifier: MIT */
 /* Levels of detail of an image, and RGB texels made curves once, before rendering.
  *
- * A texel of a spectrum texture is s(lambda) = scale (1/2 + x / (2 sqrt(1 + x^2))), x quadratic in lambda (Jakob & Hanika
- * 2019). To find x from RGB needs a walk through a large table; it is done here, once a texel, and a hit only evaluates.
- * Interpolating the curves is linear in the spectrum, so the colour of what is interpolated, under the space's illuminant,
- * is the interpolated RGB; between texels the curve differs from the one that the interpolated RGB would be given by a
- * metamer, and a footprint's mean is the mean of the spectra under it, as of real surfaces. (Levels above the first are
- * curves of mean RGBs: again metamers.)
+ * A texel of a spectrum texture is s(lambda) = scale (1/2 + x / (2 sqrt(1 + x^2))), x quadratic in lambda (Jakob &
+ * Hanika 2019). To find x from RGB needs a walk through a large table; it is done here, once a texel, and a hit only
+ * evaluates.
  *
- * Stored are the values of x at 400, 550 and 700 nm, to 2^-12 of themselves: s is wrong by less than 5e-5 at the anchors,
- * by 4e-5 in the mean over all RGB and wavelengths, by 9e-4 at worst (saturated colours, where x crosses zero steeply); a
- * step of 8-bit texels is 4e-3. 8 bytes a texel, 10.7 with the pyramid.
+ * Interpolating the curves is linear in the spectrum, so the colour of what is interpolated, under the
+ * space's illuminant, is the interpolated RGB; between texels the curve differs from the one that the interpolated RGB
+ * would be given by a metamer, and a footprint's mean is the mean of the spectra under it, as of real surfaces. (Levels
+ * above the first are curves of mean RGBs: again metamers.)
  *
- * Williams 1983. Images whose sides are no powers of two are not resampled: a level has ceil(n / 2) cells, and texels on a
- * border of cells count to both by their overlap. */
+ * Stored are the values of x at 400, 550 and 700 nm, to 2^-12 of themselves: s is wrong by less than 5e-5 at the
+ * anchors, by 4e-5 in the mean over all RGB and wavelengths, by 9e-4 at worst (saturated colours, where x crosses zero
+ * steeply); a step of 8-bit texels is 4e-3. 8 bytes a texel, 10.7 with the pyramid.
+ *
+ * Williams 1983. Images whose sides are no powers of two are not resampled: a level has ceil(n / 2) cells, and texels
+ * on a border of cells count to both by their overlap. */
 #include "texture/pyramid.h"
 
 #include <string.h>
@@ -52,8 +54,8 @@ struct sr_packed_texel sr_packed_texel_encode(struct sr_texture_use use, struct 
 {
     struct sr_packed_texel t = {.scale = scale_to_packed(1)};
     if (use.rgb_use != SR_PARAM_ALBEDO) {
-        // the curve of rgb / scale, with twice the greatest as scale: where the sigmoid is smoothest. Rounding the scale
-        // before dividing by it costs nothing
+        // the curve of rgb / scale, with twice the greatest as scale: where the sigmoid is smoothest. The scale is
+        // rounded before the division, so that costs nothing
         t.scale = scale_to_packed(2 * fmaxf(rgb.r, fmaxf(rgb.g, rgb.b)));
         float scale = scale_from_packed(t.scale);
         float inv = scale > 0 ? 1 / scale : 0;
@@ -74,7 +76,8 @@ sr_spectrum sr_packed_texels_sum(const struct sr_packed_texel *const texel[], co
                                  bool has_scale, sr_spectrum lambda)
 {
     // Lagrange's polynomials of the anchors, with the factor that turns the bits of a half into its float
-    sr_spectrum a = (lambda - 400.0f) * (1 / 150.0f), b = (lambda - 550.0f) * (1 / 150.0f), c = (lambda - 700.0f) * (1 / 150.0f);
+    sr_spectrum a = (lambda - 400.0f) * (1 / 150.0f), b = (lambda - 550.0f) * (1 / 150.0f),
+                c = (lambda - 700.0f) * (1 / 150.0f);
     sr_spectrum l0 = b * c * 0x1p111f, l1 = a * c * -0x1p112f, l2 = a * b * 0x1p111f;
     sr_spectrum sum = SR_BLACK;
     float flat = 0;
@@ -160,33 +163,52 @@ struct work {
     struct sr_texture_use use;
 };
 
+// NaN counts as nothing, infinity as much
 static float adjusted(struct sr_pyramid_adjust a, float v)
 {
     v *= a.scale;
-    return fmaxf(a.invert ? 1 - v : v, 0);
+    v = a.invert ? 1 - v : v;
+    return v > 0 ? (v < 1e30f ? v : 1e30f) : 0;
 }
 
-static void convert_row(void *context, uint64_t y)
+// images repeat their colours: those met lately in a band of rows are kept with their curves
+enum { BAND_ROWS = 32, CACHE_SIZE = 2048 };
+struct cached {
+    struct sr_rgb rgb;
+    struct sr_packed_texel packed;
+};
+
+static uint32_t cache_slot(struct sr_rgb rgb)
+{
+    uint32_t bits[3];
+    memcpy(bits, &rgb, sizeof bits);
+    return (bits[0] * 0x9e3779b1u ^ bits[1] * 0x85ebca77u ^ bits[2] * 0xc2b2ae3du) >> 21; // 11 bits: CACHE_SIZE
+}
+
+static void convert_band(void *context, uint64_t band)
 {
     struct work *work = context;
-    struct sr_rgb last = {0};
-    struct sr_packed_texel last_packed = {0};
-    for (uint32_t x = 0; x < work->source.width; ++x) {
-        struct sr_rgb rgb = fetch(&work->source, x, (uint32_t)y);
-        size_t i = (size_t)y * work->source.width + x;
-        rgb.r = adjusted(work->adjust, rgb.r);
-        if (work->values) {
-            work->values[i] = rgb.r;
-            continue;
+    uint32_t y0 = (uint32_t)band * BAND_ROWS, y1 = y0 + BAND_ROWS;
+    y1 = y1 < work->source.height ? y1 : work->source.height;
+    struct cached cache[CACHE_SIZE];
+    for (int i = 0; i < CACHE_SIZE && work->spectra; ++i)
+        cache[i].rgb.r = -1; // no texel's: none is negative
+    for (uint32_t y = y0; y < y1; ++y)
+        for (uint32_t x = 0; x < work->source.width; ++x) {
+            struct sr_rgb rgb = fetch(&work->source, x, y);
+            size_t i = (size_t)y * work->source.width + x;
+            rgb.r = adjusted(work->adjust, rgb.r);
+            if (work->values) {
+                work->values[i] = rgb.r;
+                continue;
+            }
+            rgb.g = adjusted(work->adjust, rgb.g);
+            rgb.b = adjusted(work->adjust, rgb.b);
+            struct cached *c = &cache[cache_slot(rgb)];
+            if (c->rgb.r != rgb.r || c->rgb.g != rgb.g || c->rgb.b != rgb.b)
+                *c = (struct cached){rgb, sr_packed_texel_encode(work->use, rgb)};
+            work->spectra[i] = c->packed;
         }
-        rgb.g = adjusted(work->adjust, rgb.g);
-        rgb.b = adjusted(work->adjust, rgb.b);
-        if (x == 0 || memcmp(&rgb, &last, sizeof rgb) != 0) {
-            last_packed = sr_packed_texel_encode(work->use, rgb);
-            last = rgb;
-        }
-        work->spectra[i] = last_packed;
-    }
 }
 
 static void halve_row(void *context, uint64_t y)
@@ -217,10 +239,10 @@ static void halve_row(void *context, uint64_t y)
     }
 }
 
-static void for_rows(uint32_t width, uint32_t height, void (*row)(void *, uint64_t), struct work *work)
+// small images are done before a thread has begun
+static int threads_for(uint32_t width, uint32_t height)
 {
-    int threads = (uint64_t)width * height > 65536 ? sr_thread_count() : 1; // small ones are done before a thread begins
-    sr_parallel_for(threads, height, row, work);
+    return (uint64_t)width * height > 65536 ? sr_thread_count() : 1;
 }
 
 sr_status sr_pyramid_build(struct sr_pyramid *p, const struct sr_texels *texels, bool is_float,
@@ -228,8 +250,10 @@ sr_status sr_pyramid_build(struct sr_pyramid *p, const struct sr_texels *texels,
                            struct sr_error *error)
 {
     if (texels->width == 0 || texels->height == 0 || texels->width > 1u << 30 || texels->height > 1u << 30 ||
-        (!texels->bytes && !texels->floats) || (texels->channels != 1 && texels->channels != 3 && texels->channels != 4))
-        return sr_fail(error, SR_ERROR_INPUT, "an image texture has no texels that could be used (%u x %u, %u channels)",
+        (!texels->bytes && !texels->floats) ||
+        (texels->channels != 1 && texels->channels != 3 && texels->channels != 4))
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "an image texture has no texels that could be used (%u x %u, %u channels)",
                        (unsigned)texels->width, (unsigned)texels->height, (unsigned)texels->channels);
 
     p->count = 0;
@@ -245,11 +269,12 @@ sr_status sr_pyramid_build(struct sr_pyramid *p, const struct sr_texels *texels,
         else
             work.spectra = sr_arena_alloc(arena, n * sizeof(struct sr_packed_texel));
         if (!work.values && !work.spectra) {
-            status = sr_fail(error, SR_ERROR_RESOURCE, "no memory for an image texture of %u x %u", (unsigned)source.width,
-                             (unsigned)source.height);
+            status = sr_fail(error, SR_ERROR_RESOURCE, "no memory for an image texture of %u x %u",
+                             (unsigned)source.width, (unsigned)source.height);
             break;
         }
-        for_rows(source.width, source.height, convert_row, &work);
+        sr_parallel_for(threads_for(source.width, source.height), (source.height + BAND_ROWS - 1) / BAND_ROWS,
+                        convert_band, &work);
         p->levels[p->count++] = (struct sr_pyramid_level){source.width, source.height, work.values, work.spectra};
         if (n == 1)
             break;
@@ -260,7 +285,7 @@ sr_status sr_pyramid_build(struct sr_pyramid *p, const struct sr_texels *texels,
             status = sr_fail(error, SR_ERROR_RESOURCE, "no memory to average an image texture");
             break;
         }
-        for_rows(width, height, halve_row, &work);
+        sr_parallel_for(threads_for(width, height), height, halve_row, &work);
         sr_free(previous);
         previous = work.halved;
         source = (struct source){width, height, channels, NULL, previous, is_float};

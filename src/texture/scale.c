@@ -8,7 +8,9 @@ struct scale {
 };
 
 #define SCALE_ROW                                                                                                      \
-    {SR_PARAM_FLOAT_TEXTURE, "scale", "1", -INFINITY, INFINITY, 1, offsetof(struct scale, scale), "factor"}
+    {                                                                                                                  \
+        SR_PARAM_FLOAT_TEXTURE, "scale", "1", -INFINITY, INFINITY, 1, offsetof(struct scale, scale), "factor"          \
+    }
 static const struct sr_param params_float[] = {
     {SR_PARAM_FLOAT_TEXTURE, "tex", "1", -INFINITY, INFINITY, 1, offsetof(struct scale, tex), "what is scaled"},
     SCALE_ROW,

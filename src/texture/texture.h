@@ -22,18 +22,18 @@ struct sr_texture_use {
     enum sr_colour_space_id space;
 };
 
-/* One file of src/texture/ each; its struct's first fields are described by params. A kind that exists for numbers and for
- * spectra is two models of one name, each with its own table: exactly one of is_float and is_spectrum is set.
+/* One file of src/texture/ each; its struct's first fields are described by params. A kind that exists for numbers and
+ * for spectra is two models of one name, each with its own table: exactly one of is_float and is_spectrum is set.
  *
- * The importer finds the model by name and type, fills the struct by the table, then calls `prepare` (may be NULL), which
- * checks, loads nothing, allocates from the arena, may set *self anew.
+ * The importer finds the model by name and type, fills the struct by the table, then calls `prepare` (may be NULL),
+ * which checks, loads nothing, allocates from the arena, may set *self anew.
  *   - Children of a float texture are SR_PARAM_FLOAT_TEXTURE, as are weights ("amount", "scale") of a spectrum texture.
  *   - In a spectrum texture's table SR_PARAM_ALBEDO and SR_PARAM_ALBEDO_TEXTURE mean "of the parent's use": values and
  *     children are read as sr_texture_use.rgb_use says, and bounded as that use is.
  *   - A row that gives an image is SR_PARAM_FILE; the texels that the importer makes of it go to texels_offset.
  *   - 2-D textures list the mapping's rows in sr_mapping_params (offsets inside struct sr_mapping, which sits at
- *     mapping_offset); 3-D ones have a struct sr_transform world_to_texture at transform_offset. The importer sets both from
- *     the transform in force at the Texture directive. A texture may have both. */
+ *     mapping_offset); 3-D ones have a struct sr_transform world_to_texture at transform_offset. The importer sets both
+ *     from the transform in force at the Texture directive. A texture may have both. */
 struct sr_texture_model {
     const char *name; // the scene file's word: "imagemap"
     const struct sr_param *params;
@@ -55,7 +55,8 @@ static inline float sr_texture_float(struct sr_texture t, const struct sr_point 
 {
     return t.model->eval_float(t.self, x);
 }
-static inline sr_spectrum sr_texture_spectrum(struct sr_texture t, const struct sr_point *x, const struct sr_wavelengths *w)
+static inline sr_spectrum sr_texture_spectrum(struct sr_texture t, const struct sr_point *x,
+                                              const struct sr_wavelengths *w)
 {
     return t.model->eval_spectrum(t.self, x, w);
 }
@@ -91,8 +92,8 @@ struct sr_mapped {
     float dsdx, dsdy, dtdx, dtdy;
 };
 struct sr_mapped sr_mapping_apply(const struct sr_mapping *m, const struct sr_point *x);
-/* Offsets inside struct sr_mapping. The planar axes' default (1,0,0) and (0,1,0) stands where the file gives none: NaN (or
- * zero) components are replaced when the texture is prepared. */
+/* Offsets inside struct sr_mapping. The planar axes' default (1,0,0) and (0,1,0) stands where the file gives none: NaN
+ * (or zero) components are replaced when the texture is prepared. */
 extern const struct sr_param sr_mapping_params[];
 
 #endif

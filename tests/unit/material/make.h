@@ -63,7 +63,8 @@ static inline struct sr_texture ramp(struct sr_arena *arena, float a, float b, f
         for (int i = 0; i < 4; ++i)
             if (strcmp(p->name, names[i]) == 0)
                 *(float *)(void *)(self + p->offset) = values[i];
-    *(struct sr_mapping *)(void *)(self + sr_texture_mapping_offset(model)) = (struct sr_mapping){.uscale = 1, .vscale = 1};
+    *(struct sr_mapping *)(void *)(self + sr_texture_mapping_offset(model)) =
+        (struct sr_mapping){.uscale = 1, .vscale = 1};
     return (struct sr_texture){model, self};
 }
 
@@ -87,7 +88,8 @@ static inline struct sr_wavelengths wavelengths(void)
 /* A square of 2 m x 3 m in the plane z = 0, seen from above. */
 static inline struct sr_point point(void)
 {
-    return (struct sr_point){.n = {0, 0, 1}, .ns = {0, 0, 1}, .dpdu = {2, 0, 0}, .dpdv = {0, 3, 0}, .dpdus = {2, 0, 0}, .uv = {0.25f, 0.5f}};
+    return (struct sr_point){
+        .n = {0, 0, 1}, .ns = {0, 0, 1}, .dpdu = {2, 0, 0}, .dpdv = {0, 3, 0}, .dpdus = {2, 0, 0}, .uv = {0.25f, 0.5f}};
 }
 
 struct shaded {

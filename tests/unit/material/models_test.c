@@ -119,13 +119,15 @@ TEST(dispersion_ends_the_secondary_wavelengths_and_a_constant_index_does_not)
         struct sr_material material = made_material(&m);
         struct shaded s = shade(&material, point(), 0.5f);
         EXPECT(!sr_wavelengths_secondary_terminated(&s.w));
-        EXPECT_NEAR(((const struct sr_bsdf_thin_dielectric *)(const void *)s.bsdf.data)->eta, 1.5, 0); // both begin with eta
+        EXPECT_NEAR(((const struct sr_bsdf_thin_dielectric *)(const void *)s.bsdf.data)->eta, 1.5,
+                    0); // both begin with eta
         struct sr_spd glass = sr_spd_named("glass-BK7");
         set_spectrum(&m, "eta", glass);
         material = made_material(&m);
         s = shade(&material, point(), 0.5f);
         EXPECT(sr_wavelengths_secondary_terminated(&s.w));
-        EXPECT_NEAR(((const struct sr_bsdf_thin_dielectric *)(const void *)s.bsdf.data)->eta, sr_spd_at(&glass, s.w.lambda[0]), 1e-6);
+        EXPECT_NEAR(((const struct sr_bsdf_thin_dielectric *)(const void *)s.bsdf.data)->eta,
+                    sr_spd_at(&glass, s.w.lambda[0]), 1e-6);
         sr_arena_free(&m.arena);
     }
 }

@@ -111,7 +111,8 @@ TEST(the_camera_looks_from_where_its_transform_puts_it)
 TEST(differentials_are_differences_of_one_pixel)
 {
     const char *names[3] = {"perspective", "orthographic", "spherical"};
-    struct sr_transform turn = sr_transform_rotate(30, (sr_vec3){1, 2, 3}), stretch = sr_transform_scale((sr_vec3){2, 1, 1});
+    struct sr_transform turn = sr_transform_rotate(30, (sr_vec3){1, 2, 3}),
+                        stretch = sr_transform_scale((sr_vec3){2, 1, 1});
     for (int i = 0; i < 3; ++i) {
         struct made m = make(names[i]);
         if (i < 2) {
@@ -120,7 +121,8 @@ TEST(differentials_are_differences_of_one_pixel)
         }
         prepare(&m, 64, 48, sr_transform_multiply(&turn, &stretch));
         sr_vec2 lens = {0.8f, 0.3f};
-        struct sr_sensor_ray r = look(&m, 20.3f, 31.7f, lens), x = look(&m, 21.3f, 31.7f, lens), y = look(&m, 20.3f, 32.7f, lens);
+        struct sr_sensor_ray r = look(&m, 20.3f, 31.7f, lens), x = look(&m, 21.3f, 31.7f, lens),
+                             y = look(&m, 20.3f, 32.7f, lens);
         EXPECT_NEAR(sr_length(sr_sub(sr_sub(x.ray.d, r.ray.d), r.dddx)), 0, 1e-6);
         EXPECT_NEAR(sr_length(sr_sub(sr_sub(y.ray.d, r.ray.d), r.dddy)), 0, 1e-6);
         EXPECT_NEAR(sr_length(sr_sub(sr_sub(x.ray.o, r.ray.o), r.dodx)), 0, 1e-6);
@@ -132,12 +134,12 @@ TEST(differentials_are_differences_of_one_pixel)
 // solid angle of the pixel (x, y) [sr], of the great-circle polygon through its corners' rays
 static double pixel_solid_angle(const struct made *m, float x, float y)
 {
-    sr_vec3 a = look(m, x, y, middle).ray.d, b = look(m, x + 1, y, middle).ray.d, c = look(m, x + 1, y + 1, middle).ray.d,
-            d = look(m, x, y + 1, middle).ray.d;
+    sr_vec3 a = look(m, x, y, middle).ray.d, b = look(m, x + 1, y, middle).ray.d,
+            c = look(m, x + 1, y + 1, middle).ray.d, d = look(m, x, y + 1, middle).ray.d;
     return sr_spherical_triangle_area(a, b, c) + sr_spherical_triangle_area(a, c, d);
 }
 
-/* A film of 36 x 24 mm behind f = 50 mm: 4 atan(a b / (f sqrt(a^2 + b^2 + f^2))) = 0.316522070564 sr, a = 18, b = 12. */
+/* A film of 36 x 24 mm behind f = 50 mm: 4 atan(a b / (f sqrt(a^2 + b^2 + f^2))) = 0.316522070564 sr: a = 18, b = 12 */
 TEST(solid_angles_of_all_pixels_sum_to_that_of_the_frame)
 {
     struct made m = make("perspective");
@@ -158,15 +160,17 @@ TEST(irradiance_of_a_flat_film_behind_a_pinhole_falls_as_cos_4)
     const float n = 2000;
     prepare(&m, 2000, 2000, sr_transform_identity());
     float x = (float)(1000 * (1 + tan(40 * 3.14159265358979 / 180)));
-    double centre = pixel_solid_angle(&m, n / 2 - 0.5f, n / 2 - 0.5f), aside = pixel_solid_angle(&m, x - 0.5f, n / 2 - 0.5f);
+    double centre = pixel_solid_angle(&m, n / 2 - 0.5f, n / 2 - 0.5f),
+           aside = pixel_solid_angle(&m, x - 0.5f, n / 2 - 0.5f);
     double cos_theta = (double)look(&m, x, n / 2, middle).ray.d.z;
     EXPECT_RELATIVE(aside / centre * cos_theta, 0.344362511235, 2e-3); // corners in float: 1e-7 of 1e-3
     sr_arena_free(&m.arena);
 }
 
 /* Image irradiance through a pupil of radius R = 12.5 mm at h = 50 mm from the film, of a field with L = 1:
- * E = INTEGRAL over the lens of cos_theta^2 / r^2 dA = (pi / 2) (1 - (h^2 + d^2 - R^2) / sqrt((h^2 + d^2 + R^2)^2 - 4 R^2 d^2))
- * (Foote 1915) at d = h tan(angle): 0.184799567858 on axis, 0.163249931822 at 15, 0.0681550144293 at 40 degrees. */
+ * E = INTEGRAL over the lens of cos_theta^2 / r^2 dA = (pi / 2) (1 - (h^2 + d^2 - R^2) / sqrt((h^2 + d^2 + R^2)^2 - 4
+ * R^2 d^2)) (Foote 1915) at d = h tan(angle): 0.184799567858 on axis, 0.163249931822 at 15, 0.0681550144293 at 40
+ * degrees. */
 TEST(a_lens_lights_its_film_as_the_pupil_of_foote_does)
 {
     const double angle[3] = {0, 15, 40}, expected[3] = {0.184799567858, 0.163249931822, 0.0681550144293};
@@ -180,7 +184,8 @@ TEST(a_lens_lights_its_film_as_the_pupil_of_foote_does)
         for (int k = 0; k < 20000; ++k) {
             sr_vec2 u = {sr_rng_float(&rng), sr_rng_float(&rng)};
             struct sr_sensor_ray r = look(&m, (float)(500 * (1 + tangent)), 500, u);
-            double dx = (double)r.ray.o.x + 0.05 * tangent, dy = (double)r.ray.o.y, h = 0.05, r2 = dx * dx + dy * dy + h * h;
+            double dx = (double)r.ray.o.x + 0.05 * tangent, dy = (double)r.ray.o.y, h = 0.05,
+                   r2 = dx * dx + dy * dy + h * h;
             sr_tally_add(&E, 3.14159265358979 * 0.0125 * 0.0125 * h * h / (r2 * r2));
         }
         EXPECT_MEAN(E, expected[i]);
@@ -188,8 +193,9 @@ TEST(a_lens_lights_its_film_as_the_pupil_of_foote_does)
     sr_arena_free(&m.arena);
 }
 
-/* f = 50 mm, f/2, sharp at 2 m, a point at 4 m: the film stands at v = 1 / (1/f - 1/u) = 51.282 mm, the point's image is a
- * disk of D |v2 - v| / v2 = 0.320512820513 mm. The disk is made of all film points from which some ray meets the point. */
+/* f = 50 mm, f/2, sharp at 2 m, a point at 4 m: the film stands at v = 1 / (1/f - 1/u) = 51.282 mm, the point's image
+ * is a disk of D |v2 - v| / v2 = 0.320512820513 mm. The disk is made of all film points from which some ray meets the
+ * point. */
 TEST(the_circle_of_confusion_is_that_of_the_thin_lens)
 {
     struct made m = make("perspective");
@@ -263,7 +269,8 @@ TEST(spherical_sees_all_directions_with_y_up)
 static void expect_refused(struct made *m, uint32_t width, struct sr_transform t)
 {
     struct sr_error error = {0};
-    EXPECT_EQUAL_INT(m->model->prepare(m->self, (struct sr_sensor_raster){width, 10}, &t, &m->arena, &error), SR_ERROR_INPUT);
+    EXPECT_EQUAL_INT(m->model->prepare(m->self, (struct sr_sensor_raster){width, 10}, &t, &m->arena, &error),
+                     SR_ERROR_INPUT);
     EXPECT(error.text[0] != 0);
 }
 

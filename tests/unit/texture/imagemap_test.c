@@ -118,7 +118,7 @@ TEST(each_level_keeps_the_mean)
     sr_arena_free(&m.arena);
 }
 
-TEST(trilinear_goes_from_level_to_level_without_a_step)
+TEST(trilinear_mixes_two_levels_and_ewa_follows_a_long_footprint)
 {
     static float values[64];
     for (int i = 0; i < 64; ++i)
@@ -233,6 +233,47 @@ TEST(a_texel_is_the_curve_of_its_rgb)
             EXPECT_NEAR(a[k], b[k], 1e-3); // the corners of the cube are the worst
         sr_arena_free(&m.arena);
     }
+}
+
+TEST(texels_that_are_no_numbers_do_no_harm)
+{
+    static const float rgb[6] = {NAN, INFINITY, -1, -INFINITY, 1e38f, 0.5f};
+    struct sr_wavelengths w = wavelengths();
+    const enum sr_param_kind kinds[3] = {SR_PARAM_ALBEDO, SR_PARAM_UNBOUNDED, SR_PARAM_ILLUMINANT};
+    for (int use = 0; use < 3; ++use) {
+        struct made m = image(false, 2, 1, 3, rgb);
+        struct sr_texture t = made_texture(&m, kinds[use]);
+        struct sr_point x = {.uv = {0.4f, 0.5f}};
+        sr_spectrum s = sr_texture_spectrum(t, &x, &w);
+        for (int i = 0; i < SR_LAMBDA_COUNT; ++i)
+            EXPECT(isfinite(s[i]) && s[i] >= 0);
+        sr_arena_free(&m.arena);
+    }
+}
+
+/* 8-bit colours repeat and are converted once in a band of rows: each texel must still be its own. */
+TEST(every_texel_of_a_large_image_of_bytes_is_its_own)
+{
+    enum { SIZE = 300 };
+    static uint8_t bytes[SIZE * SIZE * 3];
+    for (int i = 0; i < SIZE * SIZE * 3; ++i)
+        bytes[i] = (uint8_t)((i * 2654435761u) >> 24 & 0xf8u);
+    struct made m = image(false, SIZE, SIZE, 3, NULL);
+    struct sr_texels *texels = (void *)((char *)m.self + sr_texture_texels_offset(m.model));
+    texels->bytes = bytes;
+    *(int32_t *)made_member(&m, "filter") = POINT;
+    struct sr_texture t = made_texture(&m, SR_PARAM_ALBEDO);
+    struct sr_wavelengths w = wavelengths();
+    for (int i = 0; i < SIZE * SIZE; i += 37) {
+        const uint8_t *b = bytes + 3 * i;
+        struct sr_point x = {.uv = {((float)(i % SIZE) + 0.5f) / SIZE, 1 - ((float)(i / SIZE) + 0.5f) / SIZE}};
+        struct sr_rgb rgb = {(float)b[0] / 255, (float)b[1] / 255, (float)b[2] / 255};
+        struct sr_spd expected = sr_spd_from_rgb_albedo(SR_SRGB, rgb);
+        sr_spectrum s = sr_texture_spectrum(t, &x, &w), e = sr_spd_eval(&expected, w.lambda);
+        for (int k = 0; k < SR_LAMBDA_COUNT; ++k)
+            EXPECT_NEAR(s[k], e[k], 1e-3);
+    }
+    sr_arena_free(&m.arena);
 }
 
 TEST(an_image_without_texels_is_refused)

@@ -48,7 +48,10 @@ static inline struct made make(const char *name, bool is_float)
             *(struct sr_texture *)member = sr_texture_constant_spectrum(&m.arena, sr_spd_constant((float)p->initial));
     }
     if (sr_texture_mapping_offset(m.model) != SR_TEXTURE_NOWHERE)
-        *made_mapping(&m) = (struct sr_mapping){.uscale = 1, .vscale = 1, .v1 = {NAN, NAN, NAN}, .v2 = {NAN, NAN, NAN},
+        *made_mapping(&m) = (struct sr_mapping){.uscale = 1,
+                                                .vscale = 1,
+                                                .v1 = {NAN, NAN, NAN},
+                                                .v2 = {NAN, NAN, NAN},
                                                 .world_to_texture = sr_transform_identity()};
     return m;
 }

@@ -59,7 +59,11 @@ TEST(cylindrical_mapping_counts_the_angle_from_minus_x_and_the_height_in_metres)
 
 TEST(planar_mapping_projects_on_its_axes)
 {
-    struct sr_mapping m = {.kind = SR_MAPPING_PLANAR, .udelta = 1, .vdelta = 2, .v1 = {1, 2, 3}, .v2 = {0, 1, 0},
+    struct sr_mapping m = {.kind = SR_MAPPING_PLANAR,
+                           .udelta = 1,
+                           .vdelta = 2,
+                           .v1 = {1, 2, 3},
+                           .v2 = {0, 1, 0},
                            .world_to_texture = sr_transform_translate((sr_vec3){1, 0, 0})};
     struct sr_point x = point_at((sr_vec3){1, 1, 1});
     struct sr_mapped f = sr_mapping_apply(&m, &x);
@@ -69,9 +73,13 @@ TEST(planar_mapping_projects_on_its_axes)
 
 TEST(derivatives_of_all_mappings_agree_with_differences)
 {
-    struct sr_transform turn = sr_transform_rotate(35, (sr_vec3){1, 2, 3}), stretch = sr_transform_scale((sr_vec3){1, 2, 0.5f});
+    struct sr_transform turn = sr_transform_rotate(35, (sr_vec3){1, 2, 3}),
+                        stretch = sr_transform_scale((sr_vec3){1, 2, 0.5f});
     for (int kind = SR_MAPPING_SPHERICAL; kind <= SR_MAPPING_PLANAR; ++kind) {
-        struct sr_mapping m = {.kind = kind, .v1 = {1, 0.5f, 2}, .v2 = {0, 1, -1}, .world_to_texture = sr_transform_multiply(&turn, &stretch)};
+        struct sr_mapping m = {.kind = kind,
+                               .v1 = {1, 0.5f, 2},
+                               .v2 = {0, 1, -1},
+                               .world_to_texture = sr_transform_multiply(&turn, &stretch)};
         expect_derivatives(&m, point_at((sr_vec3){1, 2, 0.5f}));
         expect_derivatives(&m, point_at((sr_vec3){-1.2f, 0.8f, 1.5f}));
     }
