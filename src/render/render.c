@@ -67,7 +67,9 @@ static bool sample_pixel(const struct sr_render_job *job, float m[3][3], uint32_
     if (!job->sensor.model->ray(job->sensor.self, raster, (sr_vec2){u_lens[0], u_lens[1]}, u[3], &view))
         return true;
 
-    struct sr_path_start start = {view.ray, view.dodx, view.dody, view.dddx, view.dddy};
+    // many samples share a pixel: each stands for a smaller part of it, but textures keep some filtering (as pbrt)
+    float share = fmaxf(0.125f, 1 / sqrtf((float)job->spp));
+    struct sr_path_start start = {view.ray, sr_scale(share, view.dodx), sr_scale(share, view.dody), sr_scale(share, view.dddx), sr_scale(share, view.dddy)};
     struct sr_hit hit;
     sr_spectrum L = job->integrator.model->L(job->integrator.self, job->scene, &start, &sampler, &w, first ? &hit : NULL, worker);
     struct sr_xyz xyz = sr_spectrum_to_xyz(L, &w);
