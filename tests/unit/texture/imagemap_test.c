@@ -257,14 +257,14 @@ TEST(every_texel_of_a_large_image_of_bytes_is_its_own)
     enum { SIZE = 300 };
     static uint8_t bytes[SIZE * SIZE * 3];
     for (int i = 0; i < SIZE * SIZE * 3; ++i)
-        bytes[i] = (uint8_t)((i * 2654435761u) >> 24 & 0xf8u);
+        bytes[i] = (uint8_t)((i * 2654435761u) >> 24 & (i % 3 == 1 ? 0xffu : 0x80u));
     struct made m = image(false, SIZE, SIZE, 3, NULL);
     struct sr_texels *texels = (void *)((char *)m.self + sr_texture_texels_offset(m.model));
     texels->bytes = bytes;
     *(int32_t *)made_member(&m, "filter") = POINT;
     struct sr_texture t = made_texture(&m, SR_PARAM_ALBEDO);
     struct sr_wavelengths w = wavelengths();
-    for (int i = 0; i < SIZE * SIZE; i += 37) {
+    for (int i = 0; i < SIZE * SIZE; i += 7) {
         const uint8_t *b = bytes + 3 * i;
         struct sr_point x = {.uv = {((float)(i % SIZE) + 0.5f) / SIZE, 1 - ((float)(i / SIZE) + 0.5f) / SIZE}};
         struct sr_rgb rgb = {(float)b[0] / 255, (float)b[1] / 255, (float)b[2] / 255};
