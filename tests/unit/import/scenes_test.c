@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Every scene of the reference folder is read completely. */
 #define _XOPEN_SOURCE 700
+#include "import/import.h"
 #include "import/pbrt/description.h"
 #include "test.h"
 
@@ -86,4 +87,30 @@ TEST(a_reference_scene_cut_anywhere_never_harms)
         free(cut);
     }
     sr_free(text);
+}
+
+/* Every reference scene is finished, or what it asks for is not there yet, and the message says so. */
+TEST(every_reference_scene_is_finished_or_clearly_refused)
+{
+    const char *folder = test_reference_file("scenes");
+    path_count = 0;
+    EXPECT_EQUAL_INT(nftw(folder, note_scene, 16, FTW_PHYS), 0);
+    int finished = 0, refused = 0;
+    double time_s = 0;
+    for (int i = 0; i < path_count; ++i) {
+        if (!strstr(paths[i], ".ref.pbrt"))
+            continue;
+        struct sr_import_result r;
+        struct sr_error e = {0};
+        double start = sr_clock_s();
+        sr_status status = sr_import_pbrt(paths[i], NULL, &r, NULL, &e);
+        time_s += sr_clock_s() - start;
+        finished += status == SR_OK;
+        refused += status != SR_OK;
+        if (status != SR_OK && !strstr(e.text, "not supported yet"))
+            test_fail(__FILE__, __LINE__, "%s", e.text);
+        sr_import_result_free(&r);
+    }
+    printf("[   NOTE   ] %d finished, %d refused, %.2f s\n", finished, refused, time_s);
+    EXPECT(finished >= 25);
 }
