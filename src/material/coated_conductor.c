@@ -11,7 +11,7 @@ struct coated_conductor {
     struct bound_ggx coat_ggx, metal_ggx;
     struct bound_float thickness, g; // [mean free paths], [1]
     int32_t max_depth, sample_count;
-    bool remap;
+    bool remap, unbiased;
 };
 
 #define OFFSET(member) offsetof(struct coated_conductor, member)
@@ -45,6 +45,8 @@ static const struct sr_param params[] = {
      "single-scattering albedo in the coat; 0: clear"},
     {SR_PARAM_INT, "maxdepth", "1", 1, 1e6, 10, OFFSET(max_depth), "longest walk between the layers"},
     {SR_PARAM_INT, "nsamples", "1", 1, 1e6, 1, OFFSET(sample_count), "walks of one evaluation"},
+    {SR_PARAM_BOOL, "unbiased", "1", 0, 1, 0, OFFSET(unbiased),
+     "rough coats: exact weights; otherwise those of pbrt, which shine a few percent too much"},
     {0},
 };
 
@@ -80,6 +82,7 @@ static void bsdf(const void *self, const struct sr_material_context *c, struct s
         .max_depth = m->max_depth,
         .sample_count = m->sample_count,
         .seed = c->seed,
+        .weighs_as_pbrt = !m->unbiased,
     };
     out->model = &sr_bsdf_coated_conductor;
 }
