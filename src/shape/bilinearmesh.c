@@ -14,6 +14,8 @@
 #include "shape/mesh.h"
 #include "shape/quadric.h"
 
+#include <float.h>
+
 enum kind { GENERAL, PARALLELOGRAM, RECTANGLE, EMPTY };
 static const float small_extent2 = 0.015f; // (diagonal / distance)^2 below which area sampling is taken
 static const float min_solid_angle = 3e-4f, max_solid_angle = 6.22f; // [sr]
@@ -205,8 +207,15 @@ static bool intersect(const void *self, uint32_t primitive, sr_vec3 o, sr_vec3 d
     vertices(self, primitive, v);
     struct meeting m[2];
     int found = meet(v, o, d, 0, m), best = -1;
+    // a ray that starts exactly on the patch (a floor at y = 0) meets it at a t of rounding only
+    double reach = 0;
+    for (int i = 0; i < 4; ++i) {
+        sr_vec3 to = sr_sub(v[i], o);
+        reach = fmax(reach, (double)(fabsf(to.x) + fabsf(to.y) + fabsf(to.z)));
+    }
+    double nearest = fmax((double)t_min, 256 * DBL_EPSILON * reach / sqrt((double)sr_length2(d)));
     for (int i = 0; i < found; ++i) {
-        if (m[i].t > (double)t_min && m[i].t < (double)t_max && (best < 0 || m[i].t < m[best].t))
+        if (m[i].t > nearest && m[i].t < (double)t_max && (best < 0 || m[i].t < m[best].t))
             best = i;
     }
     if (best < 0)
