@@ -16,11 +16,11 @@ set(rgb_tables_folder ${CMAKE_CURRENT_BINARY_DIR}/rgb_tables)
 file(MAKE_DIRECTORY ${rgb_tables_folder})
 set(rgb_tables_binaries)
 set(rgb_tables_assembly "/* SPDX-License-Identifier: MIT */\n/* Embeds the tables that fit_rgb writes; made by cmake/rgb_tables.cmake. */\n\
-#if defined(__APPLE__)\n#define SYMBOL(name) _##name\n.section __TEXT,__const\n\
-#else\n#define SYMBOL(name) name\n.section .rodata.rgb_tables,\"a\"\n#endif\n")
+#if defined(__APPLE__)\n#define SYMBOL(name) _##name\n#define INTERNAL(name) .private_extern _##name\n.section __TEXT,__const\n\
+#else\n#define SYMBOL(name) name\n#define INTERNAL(name) .hidden name\n.section .rodata.rgb_tables,\"a\"\n#endif\n")
 foreach(space srgb dci_p3 rec2020 aces2065_1)
   list(APPEND rgb_tables_binaries ${rgb_tables_folder}/${space}.bin)
-  string(APPEND rgb_tables_assembly "\n.globl SYMBOL(sr_rgb_table_${space})\n.p2align 6\nSYMBOL(sr_rgb_table_${space}):\n\
+  string(APPEND rgb_tables_assembly "\n.globl SYMBOL(sr_rgb_table_${space})\nINTERNAL(sr_rgb_table_${space})\n.p2align 6\nSYMBOL(sr_rgb_table_${space}):\n\
 .incbin \"${rgb_tables_folder}/${space}.bin\"\n")
 endforeach()
 string(APPEND rgb_tables_assembly "\n#if defined(__ELF__)\n.section .note.GNU-stack,\"\"\n#endif\n")

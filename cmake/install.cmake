@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: MIT
+# What `make install` puts under its prefix: command, library, public headers, and what pkg-config and CMake need to find them.
+#
+# The command and the tests look into the library, so they always link the static one. BUILD_SHARED_LIBS=ON makes a shared
+# library of the same objects and installs that; only what is marked SR_API can be seen from outside of it.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set_target_properties(steradian PROPERTIES C_VISIBILITY_PRESET hidden)
+set(STERADIAN_INSTALLED steradian)
+if(BUILD_SHARED_LIBS)
+  add_library(steradian_shared SHARED $<TARGET_OBJECTS:steradian>)
+  set_target_properties(steradian_shared PROPERTIES OUTPUT_NAME steradian EXPORT_NAME steradian LINKER_LANGUAGE C
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  target_include_directories(steradian_shared INTERFACE $<INSTALL_INTERFACE:include>)
+  target_link_libraries(steradian_shared PRIVATE $<BUILD_INTERFACE:steradian_flags> Threads::Threads PNG::PNG JPEG::JPEG
+    ZLIB::ZLIB PkgConfig::OPENEXR ${EMBREE_LIBRARY} m)
+  set(STERADIAN_INSTALLED steradian_shared)
+endif()
+
+install(TARGETS ${STERADIAN_INSTALLED} EXPORT steradianTargets)
+if(TARGET steradian_command)
+  install(TARGETS steradian_command)
+endif()
+install(DIRECTORY include/steradian TYPE INCLUDE FILES_MATCHING PATTERN "*.h")
+install(FILES LICENSE TYPE DOC)
+
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/steradian)
+configure_package_config_file(cmake/steradianConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/steradianConfig.cmake
+  INSTALL_DESTINATION ${package_folder} NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/steradianConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(EXPORT steradianTargets NAMESPACE steradian:: DESTINATION ${package_folder})
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/steradianConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/steradianConfigVersion.cmake
+  DESTINATION ${package_folder})
+
+# The prefix is told at the time of installing, so the .pc file finds it from where it lies itself.
+file(RELATIVE_PATH STERADIAN_PC_TO_PREFIX /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+configure_file(cmake/steradian.pc.in ${CMAKE_CURRENT_BINARY_DIR}/steradian.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/steradian.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
