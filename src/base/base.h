@@ -60,6 +60,8 @@ void *sr_arena_alloc(struct sr_arena *arena, size_t size); // 64-byte aligned, z
 void *sr_arena_copy(struct sr_arena *arena, const void *data, size_t size);
 char *sr_arena_string(struct sr_arena *arena, const char *text); // a copy
 SR_PRINTF(2, 3) char *sr_arena_printf(struct sr_arena *arena, const char *format, ...);
+/* Everything of `from` belongs to `to` from now on; `from` is empty. For things that threads have made apart. */
+void sr_arena_adopt(struct sr_arena *to, struct sr_arena *from);
 void sr_arena_free(struct sr_arena *arena);
 
 /* A run of values that somebody else owns. */

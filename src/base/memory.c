@@ -114,6 +114,21 @@ char *sr_arena_printf(struct sr_arena *arena, const char *format, ...)
     return text;
 }
 
+void sr_arena_adopt(struct sr_arena *to, struct sr_arena *from)
+{
+    if (!to->blocks) {
+        *to = *from;
+    } else if (from->blocks) { // behind the newest, which still has room
+        struct sr_arena_block *last = from->blocks;
+        while (last->next)
+            last = last->next;
+        last->next = to->blocks->next;
+        to->blocks->next = from->blocks;
+        to->total += from->total;
+    }
+    *from = (struct sr_arena){0};
+}
+
 void sr_arena_free(struct sr_arena *arena)
 {
     for (struct sr_arena_block *block = arena->blocks; block;) {

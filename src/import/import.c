@@ -18,6 +18,8 @@ static sr_status describe(struct sr_pbrt_build *b, enum sr_light_choice *choice)
         status = sr_pbrt_build_lights(b);
     if (status == SR_OK)
         status = sr_pbrt_build_shapes(b);
+    if (status == SR_OK)
+        status = sr_pbrt_finish_textures(b);
     return status;
 }
 
@@ -44,6 +46,7 @@ static sr_status import(const char *path, const struct sr_import_options *option
     result->hash = b.hash;
     sr_pbrt_images_free(&b);
     sr_array_free(&b.spectra);
+    sr_array_free(&b.late_textures);
     sr_arena_free(&b.scratch);
     sr_pbrt_description_free(&d);
     result->read_s = sr_clock_s() - start_s;

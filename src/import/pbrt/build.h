@@ -12,6 +12,18 @@ struct sr_pbrt_bound_texture {
     struct sr_texture made[4];
     bool is_being_made, has_warned;
 };
+/* A texture that reads an image: what takes long is done last, for all of them at a time. */
+struct sr_pbrt_late_texture {
+    const struct sr_pbrt_entity *entity;
+    const struct sr_texture_model *model;
+    void *self;
+    struct sr_texture_use use;
+    const char *path; // of the image
+    struct sr_location where;
+    float gamma;
+    struct sr_arena arena;
+    struct sr_error error;
+};
 struct sr_pbrt_built_material {
     struct sr_material *material; // NULL: interface
     bool is_being_made, is_made;
@@ -31,6 +43,7 @@ struct sr_pbrt_build {
 
     struct sr_array images;          // struct sr_pbrt_image
     struct sr_array spectra;         // struct sr_pbrt_spectrum_file
+    struct sr_array late_textures;   // struct sr_pbrt_late_texture
     struct sr_pbrt_bound_texture *textures;   // one for each of the description
     struct sr_pbrt_built_material *materials; // first those of Material directives, then the named ones
     bool has_told_normalisation;     // that emission spectra are scaled to luminance 1
@@ -59,13 +72,16 @@ char *sr_pbrt_resolve(struct sr_pbrt_build *b, struct sr_arena *arena, const cha
 sr_status sr_pbrt_spectrum(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p, enum sr_param_kind kind,
                            struct sr_spd *out);
 
-/* images.c: each file is read once. gamma 0: sRGB, 1: linear, else the exponent of its bytes. for_good: the texels outlive
+/* images.c: each file is read once; path is resolved. gamma 0: sRGB, 1: linear, else the exponent of its bytes. for_good: the texels outlive
  * the import. */
-sr_status sr_pbrt_texels(struct sr_pbrt_build *b, const char *name, struct sr_location where, float gamma, bool for_good, struct sr_texels *out);
+sr_status sr_pbrt_texels(struct sr_pbrt_build *b, const char *path, struct sr_location where, float gamma, bool for_good, struct sr_texels *out);
+/* Reads the images that all late textures name, several at a time, so that sr_pbrt_texels finds them. */
+sr_status sr_pbrt_images_read_ahead(struct sr_pbrt_build *b);
 sr_status sr_pbrt_encoding(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const char *word, float *gamma);
 void sr_pbrt_images_free(struct sr_pbrt_build *b);
 
 /* textures.c: a named texture, made for one use: SR_PARAM_FLOAT_TEXTURE, or the kind of spectrum. */
+sr_status sr_pbrt_finish_textures(struct sr_pbrt_build *b); // the late ones
 sr_status sr_pbrt_named_texture(struct sr_pbrt_build *b, const struct sr_pbrt_param *p, bool is_float, enum sr_param_kind use, struct sr_texture *out);
 
 /* materials.c */

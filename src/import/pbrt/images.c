@@ -74,35 +74,77 @@ static sr_status make_dense(struct sr_pbrt_build *b, struct sr_pbrt_image *i)
     return SR_OK;
 }
 
-static sr_status load(struct sr_pbrt_build *b, const char *path, bool is_linear, struct sr_location where, struct sr_pbrt_image **out)
+/* ---- reading ---- */
+
+struct job {
+    const char *path;
+    bool is_linear;
+    struct sr_location where;
+    struct sr_image *image;
+    struct sr_error error;
+    uint64_t hash;
+};
+
+static void read_image(void *context, uint64_t k)
+{
+    struct job *j = &((struct job *)context)[k];
+    char *data;
+    size_t size;
+    if (sr_file_read(j->path, (size_t)16 << 30, &data, &size, &j->error) != SR_OK)
+        return;
+    j->hash = sr_pbrt_hash(0, data, size);
+    sr_image_decode(j->path, data, size, j->is_linear ? SR_IMAGE_LINEAR : SR_IMAGE_SRGB, &j->image, &j->error);
+    sr_free(data);
+}
+
+static sr_status keep(struct sr_pbrt_build *b, struct job *j)
+{
+    if (!j->image)
+        return sr_pbrt_fail(b->d, j->where, b->error, j->error.status, "%s", j->error.text);
+    struct sr_pbrt_image *i = sr_array_push(&b->images, sizeof *i);
+    if (!i) {
+        sr_image_free(j->image);
+        return sr_pbrt_no_memory(b);
+    }
+    b->hash = sr_pbrt_hash(b->hash, &j->hash, sizeof j->hash);
+    *i = (struct sr_pbrt_image){.path = j->path, .is_linear = j->is_linear, .image = j->image, .space = find_space(j->image)};
+    choose_channels(i);
+    return make_dense(b, i);
+}
+
+static struct sr_pbrt_image *find(struct sr_pbrt_build *b, const char *path, bool is_linear)
 {
     for (size_t k = 0; k < b->images.count; ++k) {
         struct sr_pbrt_image *i = SR_PBRT_AT(b->images, struct sr_pbrt_image, k);
-        if (strcmp(i->path, path) == 0 && (i->is_linear == is_linear || i->image->bytes)) {
-            *out = i;
-            return SR_OK;
-        }
+        if (strcmp(i->path, path) == 0 && (i->is_linear == is_linear || i->image->bytes))
+            return i;
     }
-    char *data;
-    size_t size;
-    struct sr_error inner = {0};
-    if (sr_file_read(path, (size_t)16 << 30, &data, &size, &inner) != SR_OK)
-        return sr_pbrt_fail(b->d, where, b->error, inner.status, "%s", inner.text);
-    b->hash = sr_pbrt_hash(b->hash, data, size);
-    struct sr_image *image = NULL;
-    sr_image_decode(path, data, size, is_linear ? SR_IMAGE_LINEAR : SR_IMAGE_SRGB, &image, &inner);
-    sr_free(data);
-    if (!image)
-        return sr_pbrt_fail(b->d, where, b->error, inner.status, "%s", inner.text);
-    struct sr_pbrt_image *i = sr_array_push(&b->images, sizeof *i);
-    if (!i) {
-        sr_image_free(image);
+    return NULL;
+}
+
+sr_status sr_pbrt_images_read_ahead(struct sr_pbrt_build *b)
+{
+    const struct sr_pbrt_late_texture *late = b->late_textures.data;
+    struct job *jobs = sr_arena_alloc(&b->scratch, b->late_textures.count * sizeof *jobs);
+    size_t count = 0;
+    if (!jobs)
         return sr_pbrt_no_memory(b);
+    for (size_t k = 0; k < b->late_textures.count; ++k) {
+        bool is_known = find(b, late[k].path, late[k].gamma == 1) != NULL;
+        for (size_t i = 0; i < count && !is_known; ++i)
+            is_known = strcmp(jobs[i].path, late[k].path) == 0 && jobs[i].is_linear == (late[k].gamma == 1);
+        if (!is_known)
+            jobs[count++] = (struct job){.path = late[k].path, .is_linear = late[k].gamma == 1, .where = late[k].where};
     }
-    *i = (struct sr_pbrt_image){.path = path, .is_linear = is_linear, .image = image, .space = find_space(image)};
-    choose_channels(i);
-    *out = i;
-    return make_dense(b, i);
+    sr_parallel_for(b->threads, count, read_image, jobs);
+    sr_status status = SR_OK;
+    for (size_t i = 0; i < count; ++i) {
+        if (status == SR_OK)
+            status = keep(b, &jobs[i]);
+        else
+            sr_image_free(jobs[i].image);
+    }
+    return status;
 }
 
 static sr_status make_decode(struct sr_pbrt_build *b, float gamma, const float **out)
@@ -114,15 +156,17 @@ static sr_status make_decode(struct sr_pbrt_build *b, float gamma, const float *
     return table ? SR_OK : sr_pbrt_no_memory(b);
 }
 
-sr_status sr_pbrt_texels(struct sr_pbrt_build *b, const char *name, struct sr_location where, float gamma, bool for_good, struct sr_texels *out)
+sr_status sr_pbrt_texels(struct sr_pbrt_build *b, const char *path, struct sr_location where, float gamma, bool for_good, struct sr_texels *out)
 {
-    char *path = sr_pbrt_resolve(b, &b->scratch, name, where);
-    struct sr_pbrt_image *i;
-    if (!path)
-        return sr_pbrt_no_memory(b);
-    sr_status status = load(b, path, gamma == 1, where, &i);
-    if (status != SR_OK)
-        return status;
+    struct sr_pbrt_image *i = find(b, path, gamma == 1);
+    if (!i) {
+        struct job j = {.path = path, .is_linear = gamma == 1, .where = where};
+        read_image(&j, 0);
+        sr_status status = keep(b, &j);
+        if (status != SR_OK)
+            return status;
+        i = find(b, path, gamma == 1);
+    }
     *out = (struct sr_texels){.width = i->image->width, .height = i->image->height, .channels = (uint32_t)i->channel_count, .space = i->space};
     size_t size = (size_t)out->width * out->height * out->channels * (i->image->bytes ? 1 : sizeof(float));
     const void *data = i->dense;

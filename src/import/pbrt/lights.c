@@ -21,9 +21,11 @@ static sr_status read_image(struct sr_pbrt_build *b, const struct sr_pbrt_entity
 {
     const char *name = NULL;
     sr_status status = sr_pbrt_get_string(b->d, &e->params, "filename", &name, b->error);
-    if (status == SR_OK && name)
-        status = sr_pbrt_texels(b, name, sr_pbrt_find(&e->params, "filename")->where, 0, true, texels);
-    return status;
+    if (status != SR_OK || !name)
+        return status;
+    struct sr_location where = sr_pbrt_find(&e->params, "filename")->where;
+    const char *path = sr_pbrt_resolve(b, &b->scratch, name, where);
+    return path ? sr_pbrt_texels(b, path, where, 0, true, texels) : sr_pbrt_no_memory(b);
 }
 
 static sr_status add_light(struct sr_pbrt_build *b, const struct sr_pbrt_light *light)

@@ -11,7 +11,7 @@ struct common {
 };
 static const struct sr_param common_params[] = {
     {SR_PARAM_FLOAT_TEXTURE, "displacement", "m", -INFINITY, INFINITY, NAN, offsetof(struct common, displacement), "bump"},
-    {SR_PARAM_STRING, "normalmap", "1", 0, 0, NAN, offsetof(struct common, normal_map), NULL},
+    {SR_PARAM_FILE, "normalmap", "1", 0, 0, NAN, offsetof(struct common, normal_map), "directions in red, green and blue"},
     {.name = NULL},
 };
 

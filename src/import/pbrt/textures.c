@@ -22,7 +22,8 @@ static sr_status unknown_texture(struct sr_pbrt_build *b, const struct sr_pbrt_p
                         sr_pbrt_suggestion_text(&s, buffer));
 }
 
-static sr_status bind_image(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, struct sr_texels *texels)
+/* An image is read later, together with all others. */
+static sr_status put_off(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_texture_model *m, void *self, enum sr_param_kind use)
 {
     const char *name = NULL, *encoding = NULL;
     float gamma;
@@ -31,7 +32,40 @@ static sr_status bind_image(struct sr_pbrt_build *b, const struct sr_pbrt_entity
         return b->error->status;
     if (!name)
         return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "Texture \"%s\": expected \"string filename\"", e->name);
-    return sr_pbrt_texels(b, name, sr_pbrt_find(&e->params, "filename")->where, gamma, false, texels);
+    struct sr_location where = sr_pbrt_find(&e->params, "filename")->where;
+    struct sr_pbrt_late_texture *late = sr_array_push(&b->late_textures, sizeof *late);
+    const char *path = sr_pbrt_resolve(b, &b->scratch, name, where);
+    if (!late || !path)
+        return sr_pbrt_no_memory(b);
+    *late = (struct sr_pbrt_late_texture){.entity = e, .model = m, .self = self, .use = {use, e->space}, .path = path, .where = where, .gamma = gamma};
+    return SR_OK;
+}
+
+static void prepare_late(void *context, uint64_t k)
+{
+    struct sr_pbrt_late_texture *t = &((struct sr_pbrt_late_texture *)context)[k];
+    if (t->model->prepare)
+        t->model->prepare(t->self, t->use, &t->arena, &t->error);
+}
+
+sr_status sr_pbrt_finish_textures(struct sr_pbrt_build *b)
+{
+    struct sr_pbrt_late_texture *late = b->late_textures.data;
+    size_t count = b->late_textures.count;
+    if (sr_pbrt_images_read_ahead(b) != SR_OK)
+        return b->error->status;
+    for (size_t k = 0; k < count; ++k) {
+        struct sr_texels *texels = (struct sr_texels *)((char *)late[k].self + late[k].model->texels_offset);
+        if (sr_pbrt_texels(b, late[k].path, late[k].where, late[k].gamma, false, texels) != SR_OK)
+            return b->error->status;
+    }
+    sr_parallel_for(b->threads, count, prepare_late, late);
+    for (size_t k = 0; k < count; ++k) {
+        sr_arena_adopt(b->arena, &late[k].arena);
+        if (late[k].error.status != SR_OK)
+            sr_pbrt_wrap(b, late[k].entity, &late[k].error); // the first one sticks
+    }
+    return b->error->status;
 }
 
 static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_texture *t, struct sr_pbrt_bound_texture *bound, enum sr_param_kind use,
@@ -61,12 +95,13 @@ static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_texture *t, 
     }
     if (m->transform_offset != SR_TEXTURE_NOWHERE)
         *(struct sr_transform *)(self + m->transform_offset) = world_to_texture;
-    if (status == SR_OK && m->texels_offset != SR_TEXTURE_NOWHERE)
-        status = bind_image(b, e, (struct sr_texels *)(self + m->texels_offset));
+    bool has_image = m->texels_offset != SR_TEXTURE_NOWHERE;
+    if (status == SR_OK && has_image)
+        status = put_off(b, e, m, self, use);
     if (status != SR_OK)
         return status;
     struct sr_error inner = {0};
-    if (m->prepare && m->prepare(self, (struct sr_texture_use){use, e->space}, b->arena, &inner) != SR_OK)
+    if (!has_image && m->prepare && m->prepare(self, (struct sr_texture_use){use, e->space}, b->arena, &inner) != SR_OK)
         return sr_pbrt_wrap(b, e, &inner);
     if (!bound->has_warned)
         sr_pbrt_warn_unused(b, e, m->params, is_2d ? sr_mapping_params : NULL);
