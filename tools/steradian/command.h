@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* What the subcommands share: their table, messages, numbers from arguments. */
+/* What the subcommands share: their table, arguments, messages, files to write, JSON. */
 #ifndef SR_TOOLS_COMMAND_H
 #define SR_TOOLS_COMMAND_H
 
 #include "base/base.h"
+#include "image/image.h"
 
 #include <getopt.h>
+#include <jansson.h>
 
 /* One file each: arguments, calls, printing. Returns the exit code: 0 done, 1 a check failed or a target was missed,
  * 2 usage, 3 bad input, 4 out of resources, 130 or 143 interrupted. */
@@ -15,20 +17,52 @@ struct command {
 };
 extern const struct command command_render, command_info, command_compare, command_image;
 
+/* ---- messages ---- */
+
 /* Exit code of a status. */
 int command_exit(sr_status status);
 /* Prints "steradian NAME: error: text" and gives the exit code. */
 int command_fail(const char *name, const struct sr_error *error);
 /* Prints what is wrong with the arguments and how to get help; 2. */
 SR_PRINTF(2, 3) int command_usage(const struct command *command, const char *format, ...);
-
 /* Messages on standard error: warnings always, notes unless quiet. */
 struct sr_log command_log(bool *quiet);
 
+/* ---- arguments ---- */
+
+/* getopt_long without messages of its own, and with ':' where a value is missing. */
+int command_next_option(int argc, char **argv, const char *letters, const struct option *options, int *index);
+/* What is wrong with the option that was just refused ('?' or ':'), and the nearest one that exists; 2. */
+int command_bad_option(const struct command *command, const struct option *options, int result, char **argv);
+/* The nearest of count words (spaced by stride bytes, the first member is the word), or NULL where none is near. */
+const char *command_nearest(const char *word, const void *words, size_t stride, size_t count);
+
 /* The whole of text as a number in the range; false and a message otherwise. */
-bool command_parse_uint(const struct command *command, const char *option, const char *text, uint64_t lo, uint64_t hi, uint64_t *value);
-bool command_parse_float(const struct command *command, const char *option, const char *text, double lo, double hi, double *value);
-/* "a,b,c,d" or "a b c d" */
-bool command_parse_floats(const struct command *command, const char *option, const char *text, int count, double *values);
+bool command_parse_uint(const struct command *command, const char *option, const char *text, uint64_t lo, uint64_t hi,
+                        uint64_t *value);
+bool command_parse_float(const struct command *command, const char *option, const char *text, double lo, double hi,
+                         double *value);
+/* "a,b,c,d" or "a b c d": finite numbers */
+bool command_parse_floats(const struct command *command, const char *option, const char *text, int count,
+                          double *values);
+
+/* ---- images ---- */
+
+/* The endings that images are written with. */
+bool command_is_image_ending(const char *path);
+/* Whether a file can be written there, by making and removing the temporary one beside it. */
+sr_status command_check_output(const char *path, struct sr_error *error);
+/* "R,G,B,albedo": the channels of these names, and all of a group ("albedo" is albedo.R, albedo.G, albedo.B), in this
+ * order. indices: room for image->channel_count of them. */
+sr_status command_select_channels(const struct sr_image *image, const char *label, const char *list, uint32_t *indices,
+                                  uint32_t *count, struct sr_error *error);
+
+/* ---- JSON: NULL and numbers that are not finite become null ---- */
+
+json_t *command_json_number(double value);
+json_t *command_json_quantity(double value, const char *unit); // {"value": 1.5, "unit": "cd/m^2"}
+json_t *command_json_text(const char *text);                   // bytes that are no UTF-8 become '?'
+/* Prints it, and releases it; the exit code. */
+int command_print_json(const char *name, json_t *json);
 
 #endif

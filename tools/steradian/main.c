@@ -3,11 +3,9 @@
 #include "command.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <errno.h>
 
-static const struct command *const commands[] = {&command_render};
+static const struct command *const commands[] = {&command_render, &command_info, &command_compare, &command_image};
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
 int command_exit(sr_status status)
@@ -38,7 +36,7 @@ static void write_log(void *user, enum sr_severity severity, const char *text)
     if (severity == SR_WARNING)
         fprintf(stderr, "warning: %s\n", text);
     else if (!*quiet)
-        fprintf(stderr, "%s\n", text);
+        fprintf(stderr, "note: %s\n", text);
 }
 
 struct sr_log command_log(bool *quiet)
@@ -46,51 +44,18 @@ struct sr_log command_log(bool *quiet)
     return (struct sr_log){.write = write_log, .user = quiet};
 }
 
-bool command_parse_float(const struct command *command, const char *option, const char *text, double lo, double hi, double *value)
-{
-    char *end;
-    errno = 0;
-    *value = strtod(text, &end);
-    if (end != text && *end == 0 && *value >= lo && *value <= hi)
-        return true;
-    command_usage(command, "--%s %s: a number from %g to %g was expected", option, text, lo, hi);
-    return false;
-}
-
-bool command_parse_uint(const struct command *command, const char *option, const char *text, uint64_t lo, uint64_t hi, uint64_t *value)
-{
-    char *end;
-    errno = 0;
-    unsigned long long v = strtoull(text, &end, 10);
-    *value = v;
-    if (end != text && *end == 0 && errno == 0 && text[0] != '-' && v >= lo && v <= hi)
-        return true;
-    command_usage(command, "--%s %s: a whole number from %llu to %llu was expected", option, text, (unsigned long long)lo, (unsigned long long)hi);
-    return false;
-}
-
-bool command_parse_floats(const struct command *command, const char *option, const char *text, int count, double *values)
-{
-    const char *p = text;
-    for (int i = 0; i < count; ++i) {
-        char *end;
-        values[i] = strtod(p, &end);
-        bool last = i + 1 == count;
-        if (end == p || (last ? *end != 0 : *end != ',' && *end != ' ')) {
-            command_usage(command, "--%s %s: %d numbers with commas between them were expected", option, text, count);
-            return false;
-        }
-        p = end + 1;
-    }
-    return true;
-}
-
 static void print_help(FILE *out)
 {
     fprintf(out, "steradian: light, computed and measured\n\nUsage: steradian SUBCOMMAND [OPTIONS] …\n\n");
     for (int i = 0; i < COMMANDS; ++i)
         fprintf(out, "  %-10s %s\n", commands[i]->name, commands[i]->summary);
-    fprintf(out, "\n'steradian SUBCOMMAND --help' tells more, with examples.\n\n"
+    fprintf(out, "\n'steradian SUBCOMMAND --help' tells more, with examples. 'steradian --version' tells the version.\n\n"
+                 "Examples:\n"
+                 "  steradian render scenes/cornell-box.pbrt -o cornell.exr -o cornell.png\n"
+                 "  steradian info cornell.exr\n"
+                 "  steradian compare cornell.exr reference.exr -o difference.png --max-z 5\n"
+                 "  steradian image cornell.exr -o cornell.png --exposure -4 --tone filmic\n"
+                 "\n"
                  "Exit codes: 0 done, 1 a check failed, 2 usage, 3 bad input, 4 out of resources, 130/143 interrupted.\n");
 }
 
@@ -101,7 +66,7 @@ int main(int argc, char **argv)
         print_help(argc > 1 ? stdout : stderr);
         return argc > 1 ? 0 : SR_ERROR_USAGE;
     }
-    if (strcmp(name, "--version") == 0) {
+    if (strcmp(name, "--version") == 0 || strcmp(name, "-V") == 0) {
         printf("steradian %s\n", SR_VERSION);
         return 0;
     }
@@ -114,7 +79,13 @@ int main(int argc, char **argv)
                 }
             return commands[i]->run(argc - 1, argv + 1);
         }
-    fprintf(stderr, "steradian: there is no subcommand \"%s\"\n", name);
-    print_help(stderr);
+    const char *names[COMMANDS];
+    for (int i = 0; i < COMMANDS; ++i)
+        names[i] = commands[i]->name;
+    const char *nearest = command_nearest(name, names, sizeof names[0], COMMANDS);
+    fprintf(stderr, "steradian: there is no subcommand \"%s\"", name);
+    if (nearest)
+        fprintf(stderr, "; did you mean \"%s\"?", nearest);
+    fprintf(stderr, "\nTry 'steradian --help'.\n");
     return SR_ERROR_USAGE;
 }

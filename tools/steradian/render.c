@@ -1,16 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* steradian render: a scene file into an image file, with error bars and a radiometric summary. */
-#include "command.h"
+#include "render_command.h"
 
-#include "import/import.h"
-#include "render/render.h"
-
-#include <jansson.h>
-#include <signal.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 static const char help[] =
@@ -43,24 +36,14 @@ static const char help[] =
     "      --stamp            write date and render time into the EXR, whose bytes then differ from run to run\n"
     "  -q, --quiet            no progress, no summary; warnings and errors stay\n"
     "\n"
+    "While it renders: Ctrl-C (SIGINT) and SIGTERM write what there is and end with 130 or 143, a second one ends at\n"
+    "once; SIGUSR1 writes what there is and goes on (kill -USR1 PID).\n"
+    "Exit codes: 0 done, 2 usage, 3 a bad scene, 4 the output cannot be written or memory is short, 130/143 interrupted.\n"
+    "\n"
     "Examples:\n"
     "  steradian render scenes/cornell-box.pbrt -o cornell.exr -o cornell.png\n"
     "  steradian render scene.pbrt -o out.pfm --spp 256 --seed 2 --quiet\n"
     "  zcat scene.pbrt.gz | steradian render - -o out.exr --json\n";
-
-enum { MAX_OUTPUTS = 8, MAX_METERS = 16, METER_SAMPLES = 4096, METER_REPLICATES = 32 };
-
-struct arguments {
-    const char *scene, *outputs[MAX_OUTPUTS];
-    int output_count;
-    struct sr_import_options import;
-    uint64_t seed, replicates, threads, tile, sample, replicate;
-    bool has_seed, has_pixel, aov, quiet, json, stats, no_pixel_jitter, no_lambda_jitter, has_exposure, stamp;
-    double pixel[2], exposure_EV, partial_s, lambda[2];
-    const char *sampler;
-    double meters[MAX_METERS][6]; // point and normal
-    int meter_count;
-};
 
 enum {
     OPT_SPP = 256, OPT_REPLICATES, OPT_SEED, OPT_THREADS, OPT_RESOLUTION, OPT_CROP, OPT_BOUNDS, OPT_LAMBDA, OPT_INTEGRATOR, OPT_SAMPLER,
@@ -82,7 +65,7 @@ static const struct option long_options[] = {
     {"irradiance", required_argument, NULL, OPT_IRRADIANCE}, {"stamp", no_argument, NULL, OPT_STAMP}, {"quiet", no_argument, NULL, 'q'}, {NULL, 0, NULL, 0},
 };
 
-static bool take_numbers(struct arguments *a, int option, const char *name, const char *text)
+static bool take_numbers(struct render_arguments *a, int option, const char *name, const char *text)
 {
     const struct command *c = &command_render;
     double v[4];
@@ -100,12 +83,18 @@ static bool take_numbers(struct arguments *a, int option, const char *name, cons
     case OPT_TILE:
         return command_parse_uint(c, name, text, 1, 1024, &a->tile);
     case OPT_SAMPLE:
+        a->has_sample = true;
         return command_parse_uint(c, name, text, 0, UINT32_MAX, &a->sample);
     case OPT_REPLICATE:
         return command_parse_uint(c, name, text, 0, UINT32_MAX, &a->replicate);
     case OPT_PIXEL:
         a->has_pixel = true;
-        return command_parse_floats(c, name, text, 2, a->pixel);
+        if (!command_parse_floats(c, name, text, 2, a->pixel))
+            return false;
+        if (a->pixel[0] >= 0 && a->pixel[1] >= 0 && a->pixel[0] == floor(a->pixel[0]) && a->pixel[1] == floor(a->pixel[1]))
+            return true;
+        command_usage(c, "--pixel %s: X,Y in whole pixels from 0 up was expected", text);
+        return false;
     case OPT_LAMBDA:
         if (!command_parse_floats(c, name, text, 2, a->lambda))
             return false;
@@ -114,16 +103,16 @@ static bool take_numbers(struct arguments *a, int option, const char *name, cons
         command_usage(c, "--lambda %s: LO,HI in nm with 100 <= LO < HI <= 20000 was expected", text);
         return false;
     case OPT_IRRADIANCE:
-        if (a->meter_count == MAX_METERS) {
-            command_usage(c, "at most %d irradiance meters", MAX_METERS);
+        if (a->meter_count == RENDER_MAX_METERS) {
+            command_usage(c, "at most %d irradiance meters", RENDER_MAX_METERS);
             return false;
         }
         return command_parse_floats(c, name, text, 6, a->meters[a->meter_count++]);
     case OPT_RESOLUTION:
         if (!command_parse_floats(c, name, text, 2, v))
             return false;
-        if (!(v[0] >= 1 && v[0] <= 2e9 && v[1] >= 1 && v[1] <= 2e9)) {
-            command_usage(c, "--resolution %s: two sizes from 1 pixel up were expected", text);
+        if (!(v[0] >= 1 && v[0] <= 4e9 && v[1] >= 1 && v[1] <= 4e9 && v[0] == floor(v[0]) && v[1] == floor(v[1]))) {
+            command_usage(c, "--resolution %s: W,H in whole pixels from 1 up was expected", text);
             return false;
         }
         a->import.width = (uint32_t)v[0], a->import.height = (uint32_t)v[1];
@@ -134,7 +123,10 @@ static bool take_numbers(struct arguments *a, int option, const char *name, cons
             return false;
         for (int i = 0; i < 4; ++i)
             a->import.crop_window[i] = (float)v[i];
-        return true;
+        if (v[0] >= 0 && v[0] < v[1] && v[1] <= 1 && v[2] >= 0 && v[2] < v[3] && v[3] <= 1)
+            return true;
+        command_usage(c, "--cropwindow %s: X0,X1,Y0,Y1 with 0 <= X0 < X1 <= 1 and 0 <= Y0 < Y1 <= 1 was expected", text);
+        return false;
     case OPT_BOUNDS:
         a->import.has_pixel_bounds = true;
         if (!command_parse_floats(c, name, text, 4, v))
@@ -150,16 +142,15 @@ static bool take_numbers(struct arguments *a, int option, const char *name, cons
     }
 }
 
-static int parse(int argc, char **argv, struct arguments *a)
+static int parse(int argc, char **argv, struct render_arguments *a)
 {
-    *a = (struct arguments){.aov = true, .lambda = {(double)SR_LAMBDA_MIN, (double)SR_LAMBDA_MAX}};
+    *a = (struct render_arguments){.aov = true, .lambda = {(double)SR_LAMBDA_MIN, (double)SR_LAMBDA_MAX}};
     int option, index = 0;
-    optind = 1;
-    while ((option = getopt_long(argc, argv, "o:qh", long_options, &index)) != -1) {
+    while ((option = command_next_option(argc, argv, ":o:q", long_options, &index)) != -1) {
         switch (option) {
         case 'o':
-            if (a->output_count == MAX_OUTPUTS)
-                return command_usage(&command_render, "at most %d output files", MAX_OUTPUTS);
+            if (a->output_count == RENDER_MAX_OUTPUTS)
+                return command_usage(&command_render, "at most %d output files", RENDER_MAX_OUTPUTS);
             a->outputs[a->output_count++] = optarg;
             break;
         case 'q': a->quiet = true; break;
@@ -173,7 +164,8 @@ static int parse(int argc, char **argv, struct arguments *a)
         case OPT_STATS: a->stats = true; break;
         case OPT_JSON: a->json = true; break;
         case OPT_STAMP: a->stamp = true; break;
-        case '?': return command_usage(&command_render, "the options above were not understood");
+        case '?':
+        case ':': return command_bad_option(&command_render, long_options, option, argv);
         default:
             if (!take_numbers(a, option, long_options[index].name, optarg))
                 return SR_ERROR_USAGE;
@@ -183,174 +175,18 @@ static int parse(int argc, char **argv, struct arguments *a)
         return command_usage(&command_render, "--sampler %s: sobol or independent was expected", a->sampler);
     if (optind + 1 != argc)
         return command_usage(&command_render, optind == argc ? "a scene file was expected" : "one scene file was expected, there are %d", argc - optind);
+    if (a->has_sample && !a->has_pixel)
+        return command_usage(&command_render, "--sample needs --pixel: which pixel's sample?");
     a->scene = argv[optind];
     return 0;
 }
 
-/* ---- writing ---- */
+/* ---- one sample alone ---- */
 
-static bool is_known_ending(const char *path)
+static int print_sample(const struct render_arguments *a, const struct sr_render_job *job)
 {
-    return sr_path_has_ending(path, ".exr") || sr_path_has_ending(path, ".png") || sr_path_has_ending(path, ".pfm") || sr_path_has_ending(path, ".hdr");
-}
-
-struct running {
-    const struct arguments *arguments;
-    const struct sr_import_result *scene;
-    const struct sr_render_job *job;
-    double last_partial_s;
-    bool on_terminal;
-    int exit_code; // of writing
-};
-
-static void describe(struct sr_image *image, const struct running *r, double elapsed_s, struct sr_error *error)
-{
-    char text[64];
-#define ATTRIBUTE(name, ...)                                                                                           \
-    do {                                                                                                               \
-        snprintf(text, sizeof text, __VA_ARGS__);                                                                      \
-        sr_image_set_attribute(image, name, text, error);                                                              \
-    } while (0)
-    ATTRIBUTE("steradian.version", "%s", SR_VERSION);
-    ATTRIBUTE("steradian.sceneHash", "%016llx", (unsigned long long)r->scene->hash);
-    ATTRIBUTE("steradian.seed", "%u", r->job->seed);
-    ATTRIBUTE("steradian.samplesPerPixel", "%u", r->job->spp);
-    ATTRIBUTE("steradian.replicates", "%u", r->job->replicates);
-    ATTRIBUTE("steradian.integrator", "%s", r->job->integrator.model->name);
-    ATTRIBUTE("steradian.lambda", "%g..%g nm", (double)r->job->lambda.lo, (double)r->job->lambda.hi);
-    if (r->arguments->stamp) {
-        time_t now = time(NULL);
-        struct tm utc;
-        gmtime_r(&now, &utc);
-        strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-        sr_image_set_attribute(image, "steradian.date", text, error);
-        ATTRIBUTE("steradian.renderTimeSeconds", "%.3f", elapsed_s);
-    }
-#undef ATTRIBUTE
-}
-
-static sr_status write_outputs(const struct running *r, const struct sr_film *film, double elapsed_s, struct sr_error *error)
-{
-    struct sr_image *image;
-    if (sr_render_image(film, true, r->job->replicates > 0, &image, error) != SR_OK)
-        return error->status;
-    describe(image, r, elapsed_s, error);
-    const struct arguments *a = r->arguments;
-    struct sr_image_write_options options = {.tone = {.op = SR_TONE_LINEAR, .is_auto = !a->has_exposure, .exposure_EV = (float)a->exposure_EV}};
-    const char *const *names = a->output_count ? a->outputs : &r->scene->film.filename;
-    for (int i = 0; i < (a->output_count ? a->output_count : 1); ++i)
-        sr_image_write(names[i], image, &options, error);
-    sr_image_free(image);
-    return error->status;
-}
-
-/* ---- progress ---- */
-
-static atomic_bool interrupted;
-static volatile sig_atomic_t interrupt_signal;
-
-static void on_signal(int number)
-{
-    if (interrupt_signal)
-        _exit(128 + number); // asked twice: at once
-    interrupt_signal = number;
-    atomic_store(&interrupted, true);
-}
-
-static void on_progress(void *user, const struct sr_render_progress *p)
-{
-    struct running *r = user;
-    if (r->on_terminal)
-        fprintf(stderr, "\r%5.1f %%  %.0f s, %.0f s left, %.2f M rays/s   ", 100 * p->share, p->elapsed_s, p->left_s, 1e-6 * (double)p->rays / p->elapsed_s);
-    if (r->arguments->partial_s > 0 && p->elapsed_s - r->last_partial_s >= r->arguments->partial_s) {
-        struct sr_error error = {0};
-        if (write_outputs(r, p->film, p->elapsed_s, &error) != SR_OK)
-            fprintf(stderr, "\nwarning: %s\n", error.text); // the render goes on
-        r->last_partial_s = p->elapsed_s;
-    }
-}
-
-/* ---- the summary ---- */
-
-static struct sr_film_mean mean_luminance(const struct sr_film *film)
-{
-    const struct sr_colour_space *space = sr_colour_space(film->settings.space);
-    return sr_film_region_mean(film, 0, 0, film->width, film->height, space->xyz_from_rgb[1]);
-}
-
-static double rate(double count, double time_s)
-{
-    return time_s > 0 ? count / time_s : 0;
-}
-
-static void print_meters(const struct arguments *a, const struct sr_render_job *job, json_t *list)
-{
-    for (int i = 0; i < a->meter_count; ++i) {
-        const double *m = a->meters[i];
-        struct sr_irradiance E = sr_render_irradiance(job, (sr_vec3){(float)m[0], (float)m[1], (float)m[2]}, (sr_vec3){(float)m[3], (float)m[4], (float)m[5]},
-                                                      METER_SAMPLES, METER_REPLICATES);
-        double k = sr_student_quantile(0.975, E.degrees);
-        if (!a->quiet)
-            fprintf(stderr, "irradiance at (%g, %g, %g) m, normal (%g, %g, %g): E_v = %.5g lx ± %.2g lx, E_e = %.5g W/m^2 ± %.2g W/m^2 (95 %%, k = %.2f, ν = %g)\n",
-                    m[0], m[1], m[2], m[3], m[4], m[5], E.E_v, k * E.E_v_error, E.E_e, k * E.E_e_error, k, E.degrees);
-        json_array_append_new(list, json_pack("{s:[f,f,f], s:[f,f,f], s:{s:s, s:f, s:f}, s:{s:s, s:f, s:f}, s:f, s:f}", "point_m", m[0], m[1], m[2], "normal",
-                                              m[3], m[4], m[5], "E_v", "unit", "lx", "value", E.E_v, "standard_uncertainty", E.E_v_error, "E_e", "unit", "W/m^2",
-                                              "value", E.E_e, "standard_uncertainty", E.E_e_error, "degrees_of_freedom", E.degrees, "coverage_factor", k));
-    }
-}
-
-static void print_summary(const struct running *r, const struct sr_film *film, const struct sr_render_report *report, const struct sr_scene_counts *counts)
-{
-    struct sr_film_mean L = mean_luminance(film);
-    double k = sr_student_quantile(0.975, L.degrees);
-    const char *kind = r->job->replicates ? "" : ", conservative";
-    fprintf(stderr, "mean luminance L_v = %.6g cd/m^2 ± %.2g cd/m^2 (95 %%, k = %.2f%s)\n", L.mean, k * L.standard_error, k, kind);
-    fprintf(stderr, "%u x %u pixels, %u samples each; %.2f s, %.2f M paths/s, %.2f M rays/s\n", film->width, film->height, r->job->spp,
-            report->render_s, 1e-6 * rate((double)report->paths, report->render_s), 1e-6 * rate((double)(report->rays + report->shadow_rays), report->render_s));
-    if (r->arguments->stats)
-        fprintf(stderr,
-                "scene: %llu triangles, %llu patches, %llu quadrics, %llu instances, %llu lights, %llu materials; read %.2f s, built %.2f s\n"
-                "memory: geometry %.1f MiB, acceleration %.1f MiB, peak %.1f MiB; rays %llu, shadow rays %llu, vertices %llu; left out: %llu primitives without area\n",
-                (unsigned long long)counts->triangles, (unsigned long long)counts->patches, (unsigned long long)counts->quadrics,
-                (unsigned long long)counts->instances, (unsigned long long)counts->lights, (unsigned long long)counts->materials, r->scene->read_s,
-                counts->build_s, (double)counts->geometry_B / 1048576, (double)counts->acceleration_B / 1048576, (double)sr_peak_memory_B() / 1048576,
-                (unsigned long long)report->rays, (unsigned long long)report->shadow_rays, (unsigned long long)report->vertices, (unsigned long long)counts->degenerate);
-}
-
-static void print_json(const struct running *r, const struct sr_film *film, const struct sr_render_report *report, const struct sr_scene_counts *counts, json_t *meters)
-{
-    struct sr_film_mean L = mean_luminance(film);
-    double k = sr_student_quantile(0.975, L.degrees);
-    char hash[17];
-    snprintf(hash, sizeof hash, "%016llx", (unsigned long long)r->scene->hash);
-    json_t *outputs = json_array();
-    for (int i = 0; i < r->arguments->output_count; ++i)
-        json_array_append_new(outputs, json_string(r->arguments->outputs[i]));
-    if (!r->arguments->output_count)
-        json_array_append_new(outputs, json_string(r->scene->film.filename));
-    json_t *j = json_pack(
-        "{s:s, s:s, s:o, s:b, s:{s:i, s:i, s:I, s:I, s:I}, s:{s:s, s:f, s:f, s:f, s:f, s:f, s:f}, s:{s:f, s:f, s:f, s:f, s:f, s:I}, s:{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I}}",
-        "version", SR_VERSION, "scene_hash", hash, "outputs", outputs, "complete", report->is_complete,
-        "settings", "width", (int)film->width, "height", (int)film->height, "spp", (json_int_t)r->job->spp, "seed", (json_int_t)r->job->seed,
-        "replicates", (json_int_t)r->job->replicates,
-        "mean_luminance", "unit", "cd/m^2", "value", L.mean, "standard_uncertainty", L.standard_error, "degrees_of_freedom", L.degrees,
-        "coverage_factor", k, "expanded_uncertainty", k * L.standard_error, "level", 0.95,
-        "time", "read_s", r->scene->read_s, "build_s", counts->build_s, "render_s", report->render_s,
-        "paths_per_s", rate((double)report->paths, report->render_s), "rays_per_s", rate((double)(report->rays + report->shadow_rays), report->render_s),
-        "peak_memory_B", (json_int_t)sr_peak_memory_B(),
-        "counts", "triangles", (json_int_t)counts->triangles, "lights", (json_int_t)counts->lights, "paths", (json_int_t)report->paths,
-        "rays", (json_int_t)report->rays, "shadow_rays", (json_int_t)report->shadow_rays, "vertices", (json_int_t)report->vertices,
-        "dropped_samples", (json_int_t)report->dropped, "primitives_without_area", (json_int_t)counts->degenerate);
-    if (!j)
-        return;
-    json_object_set(j, "irradiance", meters);
-    json_dumpf(j, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
-    putchar('\n');
-    json_decref(j);
-}
-
-static int print_sample(const struct arguments *a, const struct sr_render_job *job)
-{
+    if (a->pixel[0] >= job->film.width || a->pixel[1] >= job->film.height)
+        return command_usage(&command_render, "--pixel %.0f,%.0f: the picture has %d x %d pixels", a->pixel[0], a->pixel[1], job->film.width, job->film.height);
     struct sr_worker worker = {0};
     struct sr_first_hit first;
     float rgb[3];
@@ -366,82 +202,101 @@ static int print_sample(const struct arguments *a, const struct sr_render_job *j
 
 /* ---- all together ---- */
 
-static int check_outputs(const struct arguments *a, const struct sr_import_result *scene)
+static struct sr_render_job make_job(const struct render_arguments *a, const struct sr_import_result *scene, bool with_aov, struct rendering *r)
 {
-    for (int i = 0; i < (a->output_count ? a->output_count : 1); ++i) {
-        const char *name = a->output_count ? a->outputs[i] : scene->film.filename;
-        if (!is_known_ending(name))
-            return command_usage(&command_render, "%s: the ending .exr, .png, .pfm or .hdr was expected", name);
-    }
-    return 0;
-}
-
-static int render_scene(const struct arguments *a, struct sr_import_result *scene)
-{
-    bool wants_exr = a->output_count == 0 && sr_path_has_ending(scene->film.filename, ".exr");
-    for (int i = 0; i < a->output_count; ++i)
-        wants_exr |= sr_path_has_ending(a->outputs[i], ".exr");
-    struct running r = {.arguments = a, .scene = scene, .on_terminal = !a->quiet && isatty(STDERR_FILENO)};
-    struct sr_render_job job = {
+    return (struct sr_render_job){
         .scene = scene->scene, .sensor = scene->sensor, .filter = scene->filter, .integrator = scene->integrator, .film = scene->film,
         .sampler = !a->sampler ? scene->sampler : strcmp(a->sampler, "sobol") == 0 ? SR_SAMPLER_SOBOL : SR_SAMPLER_INDEPENDENT,
         .seed = a->has_seed ? (uint32_t)a->seed : scene->seed, .spp = scene->spp, .replicates = (uint32_t)a->replicates,
         .lambda = {(float)a->lambda[0], (float)a->lambda[1]}, .jitter_pixel = scene->jitter_pixel && !a->no_pixel_jitter,
-        .jitter_lambda = scene->jitter_lambda && !a->no_lambda_jitter, .with_aov = a->aov && wants_exr, .threads = (int)a->threads, .tile = (int)a->tile,
-        .progress = on_progress, .progress_interval_s = 0.5, .user = &r, .cancel = &interrupted,
+        .jitter_lambda = scene->jitter_lambda && !a->no_lambda_jitter, .with_aov = with_aov, .threads = (int)a->threads, .tile = (int)a->tile,
+        .progress = render_on_progress, .progress_interval_s = 0.5, .user = r, .cancel = &render_interrupted,
     };
+}
+
+/* The command that shows the first sample that was not finite again. */
+static void print_replay(const struct render_arguments *a, const struct sr_render_job *job, const struct sr_render_report *report)
+{
+    fprintf(stderr, "warning: %llu samples were not finite and count as zero; the first again: steradian render %s --seed %u --spp %u --resolution %d,%d",
+            (unsigned long long)report->dropped, a->scene, job->seed, job->spp, job->film.width, job->film.height);
+    if (job->replicates)
+        fprintf(stderr, " --replicates %u --replicate %u", job->replicates, report->dropped_replicate);
+    fprintf(stderr, " --pixel %u,%u --sample %u\n", report->dropped_x, report->dropped_y, report->dropped_sample);
+}
+
+static int finish(struct rendering *r, const struct sr_film *film, const struct sr_render_report *report)
+{
+    const struct render_arguments *a = r->arguments;
+    struct sr_error error = {0};
+    if (render_write_outputs(r, film, report->render_s, report->is_complete, &error) != SR_OK)
+        return command_fail("render", &error);
+    if (report->dropped)
+        print_replay(a, r->job, report);
+    if (!a->quiet)
+        render_print_summary(r, film, report);
+    json_t *meters = report->is_complete ? render_measure(a, r->job) : json_array();
+    int code = 0;
+    if (a->json)
+        code = render_print_json(r, film, report, meters);
+    else
+        json_decref(meters);
+    if (report->is_complete)
+        return code;
+    fprintf(stderr, "steradian render: interrupted; what there was has been written\n");
+    return render_interrupt_exit();
+}
+
+static int render_scene(const struct render_arguments *a, const struct sr_import_result *scene)
+{
+    bool wants_exr = false;
+    for (int i = 0; i < render_output_count(a); ++i)
+        wants_exr |= sr_path_has_ending(render_output_name(a, scene, i), ".exr");
+    struct rendering r = {.arguments = a, .scene = scene, .on_terminal = !a->quiet && isatty(STDERR_FILENO)};
+    struct sr_render_job job = make_job(a, scene, a->aov && wants_exr, &r);
     r.job = &job;
     if (a->has_pixel)
         return print_sample(a, &job);
-    signal(SIGINT, on_signal);
-    signal(SIGTERM, on_signal);
 
     struct sr_error error = {0};
+    int code = render_check_outputs(a, scene);
+    if (code)
+        return code;
+    if (render_check_memory(&job, &error) != SR_OK)
+        return command_fail("render", &error);
+    render_catch_interrupts();
     struct sr_film *film;
     struct sr_render_report report;
-    sr_status status = sr_render(&job, &film, &report, &error);
+    sr_render(&job, &film, &report, &error);
     if (r.on_terminal)
         fputs("\r\033[K", stderr);
     if (!film)
         return command_fail("render", &error);
-    if (write_outputs(&r, film, report.render_s, &error) != SR_OK) {
-        sr_film_destroy(film);
-        return command_fail("render", &error);
-    }
-    if (report.dropped)
-        fprintf(stderr, "warning: %llu samples were not finite and count as zero; the first again: steradian render %s --seed %u --pixel %u,%u --sample %u --replicate %u\n",
-                (unsigned long long)report.dropped, a->scene, job.seed, report.dropped_x, report.dropped_y, report.dropped_sample, report.dropped_replicate);
-    struct sr_scene_counts counts = sr_scene_count(scene->scene);
-    if (!a->quiet)
-        print_summary(&r, film, &report, &counts);
-    json_t *meters = json_array();
-    print_meters(a, &job, meters);
-    if (a->json)
-        print_json(&r, film, &report, &counts, meters);
-    json_decref(meters);
+    code = finish(&r, film, &report);
     sr_film_destroy(film);
-    if (status == SR_CANCELLED) {
-        fprintf(stderr, "steradian render: interrupted; what there was has been written\n");
-        return 128 + (interrupt_signal ? interrupt_signal : SIGINT);
-    }
-    return 0;
+    return code;
 }
 
 static int run(int argc, char **argv)
 {
-    struct arguments a;
-    int usage = parse(argc, argv, &a);
-    if (usage)
-        return usage;
+    render_catch_requests();
+    struct render_arguments a;
+    int code = parse(argc, argv, &a);
+    if (!code && a.output_count && !a.has_pixel)
+        code = render_check_outputs(&a, NULL);
+    if (code)
+        return code;
     a.import.threads = (int)a.threads;
     struct sr_error error = {0};
     struct sr_log log = command_log(&a.quiet);
     struct sr_import_result scene;
-    if (sr_import_pbrt(a.scene, &a.import, &scene, &log, &error) != SR_OK)
+    const uint32_t most = 1u << 20; // what the film takes [pixel]
+    if (a.import.width > most || a.import.height > most)
+        sr_fail(&error, SR_ERROR_RESOURCE, "a picture of %u x %u pixels is too large: at most %u a side", a.import.width, a.import.height, most);
+    else
+        sr_import_pbrt(a.scene, &a.import, &scene, &log, &error);
+    if (error.status)
         return command_fail("render", &error);
-    int code = check_outputs(&a, &scene);
-    if (!code)
-        code = render_scene(&a, &scene);
+    code = render_scene(&a, &scene);
     sr_import_result_free(&scene);
     return code;
 }

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT */
+/* What the two halves of steradian info share. */
+#ifndef SR_TOOLS_INFO_H
+#define SR_TOOLS_INFO_H
+
+#include "command.h"
+
+struct info_arguments {
+    const char *path;
+    bool json, quiet;
+};
+
+/* Reads a scene and tells what it contains; the exit code. */
+int info_scene(const struct info_arguments *arguments);
+
+#endif

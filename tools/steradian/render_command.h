@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT */
+/* What the parts of steradian render share: the arguments, and a render that is running. */
+#ifndef SR_TOOLS_RENDER_H
+#define SR_TOOLS_RENDER_H
+
+#include "command.h"
+
+#include "import/import.h"
+#include "render/render.h"
+
+enum { RENDER_MAX_OUTPUTS = 8, RENDER_MAX_METERS = 16 };
+
+struct render_arguments {
+    const char *scene, *outputs[RENDER_MAX_OUTPUTS];
+    int output_count;
+    struct sr_import_options import;
+    uint64_t seed, replicates, threads, tile, sample, replicate;
+    bool has_seed, has_pixel, has_sample, aov, quiet, json, stats, no_pixel_jitter, no_lambda_jitter, has_exposure, stamp;
+    double pixel[2], exposure_EV, partial_s;
+    double lambda[2];                       // [nm]
+    const char *sampler;
+    double meters[RENDER_MAX_METERS][6];    // [m] point, [1] normal
+    int meter_count;
+};
+
+/* A render while it runs. */
+struct rendering {
+    const struct render_arguments *arguments;
+    const struct sr_import_result *scene;
+    const struct sr_render_job *job;
+    double last_partial_s; // [s]
+    bool on_terminal;
+};
+
+/* ---- render_output.c ---- */
+
+/* The files to write: those of -o, or the scene's own. */
+int render_output_count(const struct render_arguments *a);
+const char *render_output_name(const struct render_arguments *a, const struct sr_import_result *scene, int i);
+/* Endings that are known, folders that can be written: before any work. 0, or the exit code of a failure that has been told.
+ * scene: NULL while it is not read yet. */
+int render_check_outputs(const struct render_arguments *a, const struct sr_import_result *scene);
+/* Whether the picture and what belongs to it fit into this machine's memory. */
+sr_status render_check_memory(const struct sr_render_job *job, struct sr_error *error);
+sr_status render_write_outputs(const struct rendering *r, const struct sr_film *film, double elapsed_s, bool is_complete, struct sr_error *error);
+
+/* SIGUSR1 asks for a partial picture; from the first moment, so that it never kills. */
+void render_catch_requests(void);
+/* SIGINT and SIGTERM end the render, which then writes what there is; a second one ends the program at once. */
+void render_catch_interrupts(void);
+extern atomic_bool render_interrupted;
+int render_interrupt_exit(void); // 130 or 143
+void render_on_progress(void *user, const struct sr_render_progress *p);
+
+/* ---- render_summary.c ---- */
+
+/* Measures and, unless quiet, prints; returns the list for the JSON. */
+json_t *render_measure(const struct render_arguments *a, const struct sr_render_job *job);
+void render_print_summary(const struct rendering *r, const struct sr_film *film, const struct sr_render_report *report);
+/* Takes meters over; the exit code. */
+int render_print_json(const struct rendering *r, const struct sr_film *film, const struct sr_render_report *report, json_t *meters);
+
+#endif
