@@ -71,8 +71,8 @@ __attribute__((noinline)) static float density(const struct layers *l, sr_vec3 w
     } else {
         interface_f_pdf(&l->top, wo, wi, SR_LOBE_REFLECTION | SR_LOBE_TRANSMISSION, &top);
         float s = sr_sqr(eta), t = 0.5f * sr_sqr(eta - 1);
-        struct sr_ggx seen = {smaller(1, sqrtf(s * sr_sqr(l->base.alpha_x) + t * sr_sqr(l->top.ggx.alpha_x))),
-                              smaller(1, sqrtf(s * sr_sqr(l->base.alpha_y) + t * sr_sqr(l->top.ggx.alpha_y)))};
+        struct sr_ggx seen = {sr_min(1, sqrtf(s * sr_sqr(l->base.alpha_x) + t * sr_sqr(l->top.ggx.alpha_x))),
+                              sr_min(1, sqrtf(s * sr_sqr(l->base.alpha_y) + t * sr_sqr(l->top.ggx.alpha_y)))};
         ggx_reflection(ggx_usable(seen), wo, wi, &base, &cos_m);
     }
     // what the medium scatters, and what meets the base again and again, goes anywhere

@@ -20,11 +20,6 @@ static inline float larger(float a, float b)
 {
     return a > b ? a : b;
 }
-static inline float smaller(float a, float b)
-{
-    return a < b ? a : b;
-}
-
 /* sin and cos of 2 pi u for u in [0, 1]; |error| < 2e-7. */
 static inline void sin_cos_turn(float u, float *s, float *c)
 {
@@ -42,7 +37,7 @@ static inline void sin_cos_turn(float u, float *s, float *c)
 /* Fresnel's reflectance and the cosine of the refracted direction; cos_i in 0 ... 1, eta = transmitted / incident side. */
 static inline float fresnel_and_cos(float cos_i, float eta, float *cos_t)
 {
-    cos_i = smaller(cos_i, 1);
+    cos_i = sr_min(cos_i, 1);
     float sin2_t = (1 - cos_i) * (1 + cos_i) / (eta * eta);
     *cos_t = 0;
     if (sin2_t >= 1)
@@ -198,7 +193,7 @@ static inline float interface_f_pdf(const struct interface *a, sr_vec3 wo, sr_ve
 /* A conductor's reflectance per wavelength; c = |cos theta|. The real form of Fresnel's formulas. */
 static inline sr_spectrum conductor_fresnel(float c, sr_spectrum eta, sr_spectrum k)
 {
-    c = smaller(c, 1);
+    c = sr_min(c, 1);
     float c2 = c * c, s2 = (1 - c) * (1 + c);
     sr_spectrum nk = eta * k;
     sr_spectrum t0 = eta * eta - k * k - s2;

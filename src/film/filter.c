@@ -70,7 +70,7 @@ static float box_value(const void *self, sr_vec2 p)
 static float triangle_value(const void *self, sr_vec2 p)
 {
     const struct triangle *f = self;
-    return fmaxf(0, f->xradius - fabsf(p.x)) * fmaxf(0, f->yradius - fabsf(p.y));
+    return sr_max(0, f->xradius - fabsf(p.x)) * sr_max(0, f->yradius - fabsf(p.y));
 }
 
 /* shifted so that it ends at zero at the radius */
@@ -79,7 +79,7 @@ static float gaussian_value(const void *self, sr_vec2 p)
     const struct gaussian *f = self;
     float s = -0.5f / sr_sqr(f->sigma);
     float x = expf(s * sr_sqr(p.x)) - expf(s * sr_sqr(f->xradius)), y = expf(s * sr_sqr(p.y)) - expf(s * sr_sqr(f->yradius));
-    return fmaxf(0, x) * fmaxf(0, y);
+    return sr_max(0, x) * sr_max(0, y);
 }
 
 static float mitchell_1(float x, float B, float C) // on [-2, 2]

@@ -156,7 +156,7 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
         if (!(carried > 0))
             return L;
         if (carried < 1 && bounce > 1) {
-            float survive = fmaxf(carried, 0.05f);
+            float survive = sr_max(carried, 0.05f);
             if (u_light[3] >= survive)
                 return L;
             beta *= 1 / survive;

@@ -89,7 +89,7 @@ static sr_status build_density(struct infinite *m, struct sr_arena *arena, struc
     m->choice = m->factor * mean;
     if (max > 1.001 * (double)mean)
         for (size_t i = 0; i < n; ++i)
-            f[i] = fmaxf(f[i] - mean, 0);
+            f[i] = sr_max(f[i] - mean, 0);
     bool is_built = sr_piecewise2_build(arena, f, t->width, t->height, &m->density);
     sr_free(f);
     return is_built ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "no memory for the density of %s", m->filename);
@@ -210,7 +210,7 @@ static bool bounds(const void *self, struct sr_light_bounds *b)
 {
     const struct infinite *m = self;
     float radius = m->radius > 0 ? m->radius : 1; // a scene without extent is lit, too
-    *b = (struct sr_light_bounds){.power = is_image(m) ? 4 * SR_PI * SR_PI * radius * radius * fmaxf(m->luminance, m->choice) : 0};
+    *b = (struct sr_light_bounds){.power = is_image(m) ? 4 * SR_PI * SR_PI * radius * radius * sr_max(m->luminance, m->choice) : 0};
     return false;
 }
 

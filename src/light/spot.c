@@ -44,7 +44,7 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     if (isnan(m->to.x))
         m->to = (sr_vec3){0, 0, 1};
     m->total = sr_radians(m->coneangle);
-    m->start = sr_radians(fmaxf(m->coneangle - m->conedeltaangle, 0));
+    m->start = sr_radians(sr_max(m->coneangle - m->conedeltaangle, 0));
     m->cos_start = cosf(m->start);
     m->cos_total = cosf(m->total);
     sr_vec3 axis = sr_transform_vector(&m->common.light_to_world, sr_sub(m->to, m->from));
@@ -101,7 +101,7 @@ static bool bounds(const void *self, struct sr_light_bounds *b)
 {
     const struct spot *m = self;
     *b = (struct sr_light_bounds){.box = {m->p, m->p}, .axis = m->axis, .cos_theta_o = m->cos_start,
-                                  .cos_theta_e = cosf(fminf(m->total - m->start, SR_PI)),
+                                  .cos_theta_e = cosf(sr_min(m->total - m->start, SR_PI)),
                                   .power = solid_angle(m) > 0 ? 4 * SR_PI * m->choice : 0};
     return true;
 }

@@ -233,7 +233,7 @@ static struct item enclose(const struct item *children, int n)
 
 static int16_t round_down(float cosine)
 {
-    return (int16_t)fmaxf(floorf(cosine * 32767 - 0.01f), -32767);
+    return (int16_t)sr_max(floorf(cosine * 32767 - 0.01f), -32767);
 }
 
 static void store(const struct build *b, struct sr_light_tree_node *node, int slot, const struct item *child)
@@ -304,7 +304,7 @@ static uint32_t collect(struct build *b, const struct sr_light *lights, uint32_t
         v4 lo = {l.box.lo.x, l.box.lo.y, l.box.lo.z, l.cos_theta_o}, hi = {l.box.hi.x, l.box.hi.y, l.box.hi.z, -l.cos_theta_e};
         b->items[n++] = (struct item){lo, hi, {l.axis.x, l.axis.y, l.axis.z, l.two_sided ? l.power / 2 : l.power}, i, l.two_sided};
         for (int a = 0; a < 3; ++a)
-            farthest = fmaxf(farthest, fmaxf(fabsf(lo[a]), fabsf(hi[a])));
+            farthest = sr_max(farthest, sr_max(fabsf(lo[a]), fabsf(hi[a])));
     }
     b->slop = farthest * 8 * SR_MACHINE_EPSILON;
     return n;

@@ -10,12 +10,12 @@
 
 static struct sr_ggx ggx_of(float u, float v, bool remap)
 {
-    u = greater(u, 0);
-    v = greater(v, 0);
+    u = sr_max(u, 0);
+    v = sr_max(v, 0);
     struct sr_ggx g = {remap ? sr_ggx_roughness_to_alpha(u) : u, remap ? sr_ggx_roughness_to_alpha(v) : v};
     if (!sr_ggx_is_smooth(g)) { // one axis may be polished while the other is not: slopes stay finite
-        g.alpha_x = greater(g.alpha_x, 1e-4f);
-        g.alpha_y = greater(g.alpha_y, 1e-4f);
+        g.alpha_x = sr_max(g.alpha_x, 1e-4f);
+        g.alpha_y = sr_max(g.alpha_y, 1e-4f);
     }
     return g;
 }

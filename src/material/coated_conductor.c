@@ -77,7 +77,7 @@ static void bsdf(const void *self, const struct sr_material_context *c, struct s
         .coat_ggx = eval_ggx(&m->coat_ggx, m->remap, c),
         .base_ggx = eval_ggx(&m->metal_ggx, m->remap, c),
         .coat_eta = coat_eta,
-        .thickness = greater(eval_float(&m->thickness, c), 0),
+        .thickness = sr_max(eval_float(&m->thickness, c), 0),
         .g = sr_clamp(eval_float(&m->g, c), -1, 1),
         .max_depth = m->max_depth,
         .sample_count = m->sample_count,

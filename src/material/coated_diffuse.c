@@ -56,7 +56,7 @@ static void bsdf(const void *self, const struct sr_material_context *c, struct s
         .albedo = eval_albedo(&m->albedo, c),
         .coat_ggx = eval_ggx(&m->ggx, m->remap, c),
         .coat_eta = eval_index(&m->eta, c),
-        .thickness = greater(eval_float(&m->thickness, c), 0),
+        .thickness = sr_max(eval_float(&m->thickness, c), 0),
         .g = sr_clamp(eval_float(&m->g, c), -1, 1),
         .max_depth = m->max_depth,
         .sample_count = m->sample_count,

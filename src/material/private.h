@@ -12,12 +12,6 @@ extern const struct sr_material_model sr_material_diffuse, sr_material_diffuse_t
     sr_material_dielectric, sr_material_thin_dielectric, sr_material_coated_diffuse, sr_material_coated_conductor,
     sr_material_mix, sr_material_interface;
 
-/* The greater of two; b where a is NaN. (fmaxf promises more about NaN and is a call into libm.) */
-static inline float greater(float a, float b)
-{
-    return a > b ? a : b;
-}
-
 /* A spectrum. */
 struct bound_spectrum {
     struct sr_texture texture;

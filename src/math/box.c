@@ -15,8 +15,8 @@ struct sr_box sr_box_add(struct sr_box b, sr_vec3 p)
 struct sr_box sr_box_union(struct sr_box a, struct sr_box b)
 {
     return (struct sr_box){
-        {fminf(a.lo.x, b.lo.x), fminf(a.lo.y, b.lo.y), fminf(a.lo.z, b.lo.z)},
-        {fmaxf(a.hi.x, b.hi.x), fmaxf(a.hi.y, b.hi.y), fmaxf(a.hi.z, b.hi.z)},
+        {sr_min(a.lo.x, b.lo.x), sr_min(a.lo.y, b.lo.y), sr_min(a.lo.z, b.lo.z)},
+        {sr_max(a.hi.x, b.hi.x), sr_max(a.hi.y, b.hi.y), sr_max(a.hi.z, b.hi.z)},
     };
 }
 

@@ -31,23 +31,6 @@ struct sr_frame sr_frame_from_zx(sr_vec3 z, sr_vec3 x)
     return (struct sr_frame){.x = sr_cross(y, z), .y = y, .z = z};
 }
 
-static float offset_coordinate(float p, float offset)
-{
-    float o = p + offset;
-    if (offset > 0)
-        return nextafterf(o, INFINITY);
-    if (offset < 0)
-        return nextafterf(o, -INFINITY);
-    return o;
-}
-
-sr_vec3 sr_point_offset(const struct sr_point *x, sr_vec3 w)
-{
-    float d = fabsf(x->n.x) * x->p_error.x + fabsf(x->n.y) * x->p_error.y + fabsf(x->n.z) * x->p_error.z;
-    sr_vec3 offset = sr_scale(sr_dot(w, x->n) < 0 ? -d : d, x->n);
-    return (sr_vec3){offset_coordinate(x->p.x, offset.x), offset_coordinate(x->p.y, offset.y), offset_coordinate(x->p.z, offset.z)};
-}
-
 sr_vec3 sr_equal_area_square_to_sphere(sr_vec2 p)
 {
     float u = 2 * p.x - 1, v = 2 * p.y - 1;
@@ -65,8 +48,8 @@ sr_vec2 sr_equal_area_sphere_to_square(sr_vec3 d)
 {
     float x = fabsf(d.x), y = fabsf(d.y), z = fabsf(d.z);
     float r = sqrtf((x * x + y * y) / (1 + z)); // sqrt(1 - z) without its cancellation at the pole
-    float larger = fmaxf(x, y);
-    float turn = larger > 0 ? atanf(fminf(x, y) / larger) * (2 * SR_INV_PI) : 0; // [quarter turns]
+    float larger = sr_max(x, y);
+    float turn = larger > 0 ? atanf(sr_min(x, y) / larger) * (2 * SR_INV_PI) : 0; // [quarter turns]
     float v = r * (x < y ? 1 - turn : turn);
     float u = r - v;
     if (d.z < 0) {

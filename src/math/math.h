@@ -25,6 +25,15 @@ static inline float sr_sqr(float x)
 {
     return x * x;
 }
+/* The lesser and the greater; b where a is not a number. (fminf and fmaxf promise more about NaN, and are calls.) */
+static inline float sr_min(float a, float b)
+{
+    return a < b ? a : b;
+}
+static inline float sr_max(float a, float b)
+{
+    return a > b ? a : b;
+}
 static inline float sr_clamp(float x, float lo, float hi)
 {
     return x < lo ? lo : x > hi ? hi : x;
@@ -100,7 +109,7 @@ static inline sr_vec3 sr_face_forward(sr_vec3 n, sr_vec3 v) // n, turned to the 
 }
 static inline float sr_max_component(sr_vec3 a)
 {
-    return fmaxf(a.x, fmaxf(a.y, a.z));
+    return sr_max(a.x, sr_max(a.y, a.z));
 }
 static inline float sr_component(sr_vec3 a, int axis)
 {
@@ -114,8 +123,8 @@ static inline bool sr_is_finite(sr_vec3 a)
 static inline float sr_angle_between(sr_vec3 a, sr_vec3 b)
 {
     if (sr_dot(a, b) < 0)
-        return SR_PI - 2 * asinf(fminf(1, sr_length(sr_add(a, b)) / 2));
-    return 2 * asinf(fminf(1, sr_length(sr_sub(b, a)) / 2));
+        return SR_PI - 2 * asinf(sr_min(1, sr_length(sr_add(a, b)) / 2));
+    return 2 * asinf(sr_min(1, sr_length(sr_sub(b, a)) / 2));
 }
 
 /* In a local frame the normal is z. */
@@ -216,7 +225,17 @@ struct sr_point {
 };
 
 /* An origin for a ray that leaves x toward w: off the surface by no more than the error of p, never through it. */
-sr_vec3 sr_point_offset(const struct sr_point *x, sr_vec3 w);
+static inline sr_vec3 sr_point_offset(const struct sr_point *x, sr_vec3 w)
+{
+    float d = fabsf(x->n.x) * x->p_error.x + fabsf(x->n.y) * x->p_error.y + fabsf(x->n.z) * x->p_error.z;
+    sr_vec3 offset = sr_scale(sr_dot(w, x->n) < 0 ? -d : d, x->n);
+    sr_vec3 o = sr_add(x->p, offset);
+    // away from p by at least one more ulp, so that rounding never brings it back
+    float *c = &o.x, *s = &offset.x;
+    for (int i = 0; i < 3; ++i)
+        c[i] += s[i] != 0 ? copysignf(fabsf(c[i]) * 0x1p-23f + 0x1p-126f, s[i]) : 0;
+    return o;
+}
 
 /* ---- spherical coordinates ---- */
 

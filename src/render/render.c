@@ -68,7 +68,7 @@ static bool sample_pixel(const struct sr_render_job *job, float m[3][3], uint32_
         return true;
 
     // many samples share a pixel: each stands for a smaller part of it, but textures keep some filtering (as pbrt)
-    float share = fmaxf(0.125f, 1 / sqrtf((float)job->spp));
+    float share = sr_max(0.125f, 1 / sqrtf((float)job->spp));
     struct sr_path_start start = {view.ray, sr_scale(share, view.dodx), sr_scale(share, view.dody), sr_scale(share, view.dddx), sr_scale(share, view.dddy)};
     struct sr_hit hit;
     sr_spectrum L = job->integrator.model->L(job->integrator.self, job->scene, &start, &sampler, &w, first ? &hit : NULL, worker);
@@ -76,7 +76,7 @@ static bool sample_pixel(const struct sr_render_job *job, float m[3][3], uint32_
     weight *= view.weight;
     for (int c = 0; c < 3; ++c)
         rgb[c] = weight * (m[c][0] * xyz.x + m[c][1] * xyz.y + m[c][2] * xyz.z);
-    float largest = fmaxf(rgb[0], fmaxf(rgb[1], rgb[2]));
+    float largest = sr_max(rgb[0], sr_max(rgb[1], rgb[2]));
     if (largest > job->film.max_component)
         for (int c = 0; c < 3; ++c)
             rgb[c] *= job->film.max_component / largest;

@@ -80,7 +80,7 @@ uint32_t sr_alias_sample(const struct sr_alias *a, float u, float *pmf, float *u
     if (pmf)
         *pmf = a->pmf[outcome];
     if (u_remapped)
-        *u_remapped = fminf(here ? fraction / threshold : (fraction - threshold) / (1 - threshold), SR_ONE_MINUS_EPSILON);
+        *u_remapped = sr_min(here ? fraction / threshold : (fraction - threshold) / (1 - threshold), SR_ONE_MINUS_EPSILON);
     return outcome;
 }
 
@@ -115,7 +115,7 @@ bool sr_piecewise1_build(struct sr_arena *arena, const float *f, uint32_t count,
 static uint32_t cell_of(const struct sr_piecewise1 *d, float x)
 {
     float i = (x - d->lo) / (d->hi - d->lo) * (float)d->count;
-    return i > 0 ? (uint32_t)fminf(i, (float)(d->count - 1)) : 0;
+    return i > 0 ? (uint32_t)sr_min(i, (float)(d->count - 1)) : 0;
 }
 
 static float density(const struct sr_piecewise1 *d, uint32_t cell)

@@ -80,7 +80,7 @@ void sr_spherical_triangle_sample(const sr_vec3 v[3], sr_vec3 p, sr_vec2 u, floa
     float S, C;
     sr_sin_cos_turn(u.x * omega * (0.25f * SR_INV_PI), &S, &C);
     float height = fabsf(sr_dot(along, sr_cross(a, ab)));
-    float P = S * (1 + sr_dot(a, b)), Q = fmaxf(0, C * height - S * sr_dot(ab, along));
+    float P = S * (1 + sr_dot(a, b)), Q = sr_max(0, C * height - S * sr_dot(ab, along));
     float size = P * P + Q * Q;
     // u.x = 0 leaves P = 0; where the arc is too short for floats, so is the triangle
     sr_vec3 ac2 = size > 0 ? sr_add(sr_scale(-2 * P * P / size, a), sr_scale(2 * P * Q / size, along)) : (sr_vec3){0, 0, 0};

@@ -63,7 +63,7 @@ float sr_warp_exponential(float u, float a)
 static float sample_linear(float u, float a, float b)
 {
     float root = a + sqrtf(sr_lerp(u, a * a, b * b));
-    return root > 0 ? fminf(u * (a + b) / root, SR_ONE_MINUS_EPSILON) : u;
+    return root > 0 ? sr_min(u * (a + b) / root, SR_ONE_MINUS_EPSILON) : u;
 }
 
 sr_vec2 sr_warp_bilinear(sr_vec2 u, const float w[4])

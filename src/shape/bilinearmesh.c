@@ -99,7 +99,7 @@ static enum kind classify(const sr_vec3 v[4])
 {
     sr_vec3 e = sr_sub(v[1], v[0]), f = sr_sub(v[2], v[0]);
     sr_vec3 rest = sr_sub(sr_sub(v[3], v[1]), f);
-    float extent = fmaxf(sr_length(e), sr_length(f));
+    float extent = sr_max(sr_length(e), sr_length(f));
     bool has_area = false;
     for (int i = 0; i < 4; ++i) {
         sr_vec3 n = normal_vector(v, (sr_vec2){(float)(i & 1), (float)(i >> 1)});
@@ -348,7 +348,7 @@ static bool by_solid_angle(const struct sr_shape_patches *m, uint32_t primitive,
         return false;
     float nearest2 = INFINITY;
     for (int i = 0; i < 4; ++i)
-        nearest2 = fminf(nearest2, sr_length2(sr_sub(v[i], p)));
+        nearest2 = sr_min(nearest2, sr_length2(sr_sub(v[i], p)));
     if (sr_length2(sr_sub(v[3], v[0])) < small_extent2 * nearest2)
         return false;
     sr_spherical_rectangle_sample(p, v[0], sr_sub(v[1], v[0]), sr_sub(v[2], v[0]), (sr_vec2){0.5f, 0.5f}, pdf);
@@ -359,7 +359,7 @@ static void corner_weights(const struct sr_point *reference, const sr_vec3 v[4],
 {
     for (int i = 0; i < 4; ++i) {
         sr_vec3 d = sr_sub(v[i], reference->p);
-        w[i] = sr_receiver_weight(reference, d, 1 / fmaxf(sr_length(d), 1e-30f));
+        w[i] = sr_receiver_weight(reference, d, 1 / sr_max(sr_length(d), 1e-30f));
     }
 }
 
@@ -369,10 +369,10 @@ static void area_weights(const sr_vec3 v[4], float w[4])
     for (int i = 0; i < 4; ++i) {
         sr_dvec3 c = sr_dvec(normal_vector(v, (sr_vec2){(float)(i & 1), (float)(i >> 1)}));
         w[i] = (float)sqrt(sr_ddot(c, c));
-        most = fmaxf(most, w[i]);
+        most = sr_max(most, w[i]);
     }
     for (int i = 0; i < 4; ++i) // nowhere zero, for a patch may have area within though none at its corners
-        w[i] = fmaxf(w[i], 1e-2f * most);
+        w[i] = sr_max(w[i], 1e-2f * most);
 }
 
 /* Density by area [1/m^2] at the parameters h; 0 where the patch has no area. */
@@ -474,11 +474,11 @@ static void normals(const void *self, uint32_t primitive, sr_vec3 *axis, float *
     *axis = sr_normalize(sum);
     float narrowest = 1;
     for (int i = 0; i < 4; ++i)
-        narrowest = fminf(narrowest, sr_dot(n[i], *axis));
+        narrowest = sr_min(narrowest, sr_dot(n[i], *axis));
     if (m->kinds[primitive] == RECTANGLE || m->kinds[primitive] == PARALLELOGRAM)
         *cos_theta = narrowest > 0.999f ? 1 : -1;
     else if (narrowest > 0.01f && m->kinds[primitive] == GENERAL)
-        *cos_theta = fmaxf(-1, narrowest - 1e-5f);
+        *cos_theta = sr_max(-1, narrowest - 1e-5f);
 }
 
 const struct sr_shape_model sr_shape_bilinearmesh = {

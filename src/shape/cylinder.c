@@ -25,8 +25,8 @@ static sr_status prepare(void *self, const struct sr_shape_placement *placement,
         return sr_fail(error, SR_ERROR_INPUT, "cylinder: \"radius\" is %g, expected a positive number",
                        (double)c->radius);
     float a = isnan(c->z_min) ? -1 : c->z_min, b = isnan(c->z_max) ? 1 : c->z_max;
-    c->z_min = fminf(a, b);
-    c->z_max = fmaxf(a, b);
+    c->z_min = sr_min(a, b);
+    c->z_max = sr_max(a, b);
     if (!(c->z_min < c->z_max) || !isfinite(c->z_max - c->z_min))
         return sr_fail(error, SR_ERROR_INPUT, "cylinder: \"zmin\" %g and \"zmax\" %g must be finite and differ",
                        (double)a, (double)b);
@@ -87,7 +87,7 @@ static bool intersect(const void *self, uint32_t primitive, sr_vec3 o, sr_vec3 d
         if (c->phi_max < 360 && phi > (double)c->phi_max_rad)
             continue;
         *t = (float)roots[i];
-        *hit = (sr_vec2){fminf(1, (float)(phi / (double)c->phi_max_rad)),
+        *hit = (sr_vec2){sr_min(1, (float)(phi / (double)c->phi_max_rad)),
                          (float)((z - (double)c->z_min) / ((double)c->z_max - (double)c->z_min))};
         return true;
     }

@@ -31,7 +31,7 @@ static inline float sr_density_seen_from(sr_vec3 from, sr_vec3 p, sr_vec3 n, flo
  * rough normals (a weight of sampling alone, so any positive number is right). 1 where the reference has no normal. */
 static inline float sr_receiver_weight(const struct sr_point *reference, sr_vec3 d, float inverse_length)
 {
-    return fmaxf(0.01f, fabsf(sr_dot(reference->ns, d)) * inverse_length);
+    return sr_max(0.01f, fabsf(sr_dot(reference->ns, d)) * inverse_length);
 }
 static inline bool sr_has_normal(const struct sr_point *reference)
 {

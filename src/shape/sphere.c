@@ -34,8 +34,8 @@ static sr_status prepare(void *self, const struct sr_shape_placement *placement,
         return sr_fail(error, SR_ERROR_INPUT, "sphere: \"radius\" is %g, expected a positive number",
                        (double)s->radius);
     float r = s->radius, a = isnan(s->z_min) ? -r : s->z_min, b = isnan(s->z_max) ? r : s->z_max;
-    s->z_min = sr_clamp(fminf(a, b), -r, r);
-    s->z_max = sr_clamp(fmaxf(a, b), -r, r);
+    s->z_min = sr_clamp(sr_min(a, b), -r, r);
+    s->z_max = sr_clamp(sr_max(a, b), -r, r);
     if (!(s->z_min < s->z_max))
         return sr_fail(error, SR_ERROR_INPUT,
                        "sphere: nothing is left between \"zmin\" %g and \"zmax\" %g of radius %g", (double)a, (double)b,
@@ -81,8 +81,8 @@ static struct sr_box bounds(const void *self, uint32_t primitive)
     double widest = lo > 0 ? sqrt((r - lo) * (r + lo)) : hi < 0 ? sqrt((r - hi) * (r + hi)) : r;
     struct sr_box b =
         sr_quadric_box(&s->quadric, (sr_dvec3){0, 0, (lo + hi) / 2}, (sr_dvec3){widest, widest, (hi - lo) / 2}, true);
-    return (struct sr_box){{fmaxf(whole.lo.x, b.lo.x), fmaxf(whole.lo.y, b.lo.y), fmaxf(whole.lo.z, b.lo.z)},
-                           {fminf(whole.hi.x, b.hi.x), fminf(whole.hi.y, b.hi.y), fminf(whole.hi.z, b.hi.z)}};
+    return (struct sr_box){{sr_max(whole.lo.x, b.lo.x), sr_max(whole.lo.y, b.lo.y), sr_max(whole.lo.z, b.lo.z)},
+                           {sr_min(whole.hi.x, b.hi.x), sr_min(whole.hi.y, b.hi.y), sr_min(whole.hi.z, b.hi.z)}};
 }
 
 /* [m^2] in object space: Archimedes' hat box */

@@ -7,18 +7,18 @@
 static bool is_affine3(const sr_vec3 *a, const int32_t *c, float tolerance)
 {
     sr_vec3 e = sr_sub(a[c[1]], a[c[0]]), f = sr_sub(a[c[2]], a[c[0]]), g = sr_sub(a[c[3]], a[c[1]]);
-    float extent = fmaxf(sr_max_component((sr_vec3){fabsf(e.x), fabsf(e.y), fabsf(e.z)}),
+    float extent = sr_max(sr_max_component((sr_vec3){fabsf(e.x), fabsf(e.y), fabsf(e.z)}),
                          sr_max_component((sr_vec3){fabsf(f.x), fabsf(f.y), fabsf(f.z)}));
     sr_vec3 rest = sr_sub(g, f);
-    return fmaxf(fabsf(rest.x), fmaxf(fabsf(rest.y), fabsf(rest.z))) <= tolerance * extent;
+    return sr_max(fabsf(rest.x), sr_max(fabsf(rest.y), fabsf(rest.z))) <= tolerance * extent;
 }
 
 static bool is_affine2(const sr_vec2 *a, const int32_t *c, float tolerance)
 {
     float x = a[c[3]].x - a[c[1]].x - a[c[2]].x + a[c[0]].x, y = a[c[3]].y - a[c[1]].y - a[c[2]].y + a[c[0]].y;
-    float extent = fmaxf(fmaxf(fabsf(a[c[1]].x - a[c[0]].x), fabsf(a[c[1]].y - a[c[0]].y)),
-                         fmaxf(fabsf(a[c[2]].x - a[c[0]].x), fabsf(a[c[2]].y - a[c[0]].y)));
-    return fmaxf(fabsf(x), fabsf(y)) <= tolerance * extent;
+    float extent = sr_max(sr_max(fabsf(a[c[1]].x - a[c[0]].x), fabsf(a[c[1]].y - a[c[0]].y)),
+                         sr_max(fabsf(a[c[2]].x - a[c[0]].x), fabsf(a[c[2]].y - a[c[0]].y)));
+    return sr_max(fabsf(x), fabsf(y)) <= tolerance * extent;
 }
 
 static bool may_split(const struct sr_shape_patches *m, const int32_t *c)

@@ -197,8 +197,8 @@ static bool by_solid_angle(const sr_vec3 v[3], sr_vec3 p, float *solid_angle)
     sr_vec3 a = sr_sub(v[0], p), b = sr_sub(v[1], p), c = sr_sub(v[2], p);
     sr_vec3 e0 = sr_sub(v[1], v[0]), e1 = sr_sub(v[2], v[1]), e2 = sr_sub(v[2], v[0]);
     float a2 = sr_dot(a, a), b2 = sr_dot(b, b), c2 = sr_dot(c, c);
-    float nearest2 = fminf(a2, fminf(b2, c2));
-    float extent2 = fmaxf(sr_dot(e0, e0), fmaxf(sr_dot(e1, e1), sr_dot(e2, e2)));
+    float nearest2 = sr_min(a2, sr_min(b2, c2));
+    float extent2 = sr_max(sr_dot(e0, e0), sr_max(sr_dot(e1, e1), sr_dot(e2, e2)));
     if (extent2 < small_extent2 * nearest2 || !(nearest2 > 1e-30f))
         return false;
     // of directions, so that no scale overflows

@@ -90,11 +90,11 @@ static float sigmoid_max(struct sr_sigmoid c)
 static float table_max(const struct sr_spd *s)
 {
     const struct sr_table *table = s->table;
-    float max = fmaxf(sr_spd_at(s, SR_LAMBDA_MIN), sr_spd_at(s, SR_LAMBDA_MAX));
+    float max = sr_max(sr_spd_at(s, SR_LAMBDA_MIN), sr_spd_at(s, SR_LAMBDA_MAX));
     for (int32_t i = 0; i < table->count; ++i) {
         float lambda = table->first + (float)i * table->step;
         if (lambda >= SR_LAMBDA_MIN && lambda <= SR_LAMBDA_MAX)
-            max = fmaxf(max, s->scale * table->values[i]);
+            max = sr_max(max, s->scale * table->values[i]);
     }
     return max;
 }
@@ -115,7 +115,7 @@ float sr_spd_max(const struct sr_spd *s)
         return sr_spd_at(s, sr_clamp((float)(C2_NM_K / PEAK) / s->temperature, SR_LAMBDA_MIN, SR_LAMBDA_MAX));
     case SR_SPD_ILLUMINANT:
         for (float lambda = SR_LAMBDA_MIN; lambda <= SR_LAMBDA_MAX; ++lambda)
-            max = fmaxf(max, sr_spd_at(s, lambda));
+            max = sr_max(max, sr_spd_at(s, lambda));
         return max;
     }
     return 0;

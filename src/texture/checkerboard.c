@@ -62,15 +62,15 @@ static float share_of_tex2(const struct checkerboard *t, const struct sr_point *
 {
     if (t->dimension == 2) {
         struct sr_mapped m = sr_mapping_apply(&t->mapping, x);
-        float rs = 1.5f * greater(fabsf(m.dsdx), fabsf(m.dsdy)), rt = 1.5f * greater(fabsf(m.dtdx), fabsf(m.dtdy));
+        float rs = 1.5f * sr_max(fabsf(m.dsdx), fabsf(m.dsdy)), rt = 1.5f * sr_max(fabsf(m.dtdx), fabsf(m.dtdy));
         return 0.5f - 0.5f * filtered(m.st.x, rs) * filtered(m.st.y, rt);
     }
     sr_vec3 q = sr_transform_point(&t->mapping.world_to_texture, x->p);
     sr_vec3 dqdx = sr_transform_vector(&t->mapping.world_to_texture, x->dpdx);
     sr_vec3 dqdy = sr_transform_vector(&t->mapping.world_to_texture, x->dpdy);
-    return 0.5f - 0.5f * filtered(q.x, 1.5f * greater(fabsf(dqdx.x), fabsf(dqdy.x))) *
-                      filtered(q.y, 1.5f * greater(fabsf(dqdx.y), fabsf(dqdy.y))) *
-                      filtered(q.z, 1.5f * greater(fabsf(dqdx.z), fabsf(dqdy.z)));
+    return 0.5f - 0.5f * filtered(q.x, 1.5f * sr_max(fabsf(dqdx.x), fabsf(dqdy.x))) *
+                      filtered(q.y, 1.5f * sr_max(fabsf(dqdx.y), fabsf(dqdy.y))) *
+                      filtered(q.z, 1.5f * sr_max(fabsf(dqdx.z), fabsf(dqdy.z)));
 }
 
 static sr_status prepare(void *self, struct sr_texture_use use, struct sr_arena *arena, struct sr_error *error)

@@ -108,8 +108,8 @@ static struct taps find_taps(const struct sr_pyramid_level *l, int wrap, bool po
         st.x = st.x >= 0 && st.x < 1 ? st.x : 0; // x - floor(x) may round to 1
         st.y = st.y >= 0 && st.y < 1 ? st.y : 0;
     } else {
-        st.x = smaller(greater(st.x, -1), 2);
-        st.y = smaller(greater(st.y, -1), 2);
+        st.x = sr_min(sr_max(st.x, -1), 2);
+        st.y = sr_min(sr_max(st.y, -1), 2);
     }
     struct taps taps = {.count = 0};
     float x = st.x * (float)l->width, y = st.y * (float)l->height;
@@ -161,7 +161,7 @@ static sr_spectrum read_width(const struct lookup *q, sr_vec2 st, float width)
     if (SR_LIKELY(!(cells >= 2)))              // level 0, or NaN
         if (m->filter < FILTER_TRILINEAR || !(cells > 1))
             return read_level(q, 0, st);
-    float level = greater(log2f(cells), 0);
+    float level = sr_max(log2f(cells), 0);
     if (level >= (float)last)
         return read_level(q, last, (sr_vec2){0.5f, 0.5f});
     uint32_t below = (uint32_t)level;
@@ -181,10 +181,10 @@ static sr_spectrum read_ellipse(const struct lookup *q, const struct sr_mapped *
         length2 = other2;
         other2 = swap;
     }
-    float length = sqrtf(length2), width = greater(sqrtf(other2), length / q->map->max_anisotropy);
+    float length = sqrtf(length2), width = sr_max(sqrtf(other2), length / q->map->max_anisotropy);
     if (!(width > 0))
         return read_level(q, 0, st);
-    int taps = (int)ceilf(smaller(length / width, 64) - 1e-4f);
+    int taps = (int)ceilf(sr_min(length / width, 64) - 1e-4f);
     if (taps <= 1)
         return read_width(q, st, 2 * width);
     float reach = 1 - width / length; // taps are as wide as the minor axis: their centres stay inside by that much
@@ -205,7 +205,7 @@ static sr_spectrum look_up(const struct lookup *q, const struct sr_point *x)
     sr_vec2 st = {f.st.x, 1 - f.st.y};
     if (q->map->filter == FILTER_EWA)
         return read_ellipse(q, &f, st);
-    return read_width(q, st, 2 * greater(greater(fabsf(f.dsdx), fabsf(f.dsdy)), greater(fabsf(f.dtdx), fabsf(f.dtdy))));
+    return read_width(q, st, 2 * sr_max(sr_max(fabsf(f.dsdx), fabsf(f.dsdy)), sr_max(fabsf(f.dtdx), fabsf(f.dtdy))));
 }
 
 static float eval_float(const void *self, const struct sr_point *x)
@@ -224,7 +224,7 @@ static sr_status prepare_for(struct imagemap *m, bool is_float, struct sr_textur
                              struct sr_error *error)
 {
     m->rgb_use = use.rgb_use;
-    m->max_anisotropy = greater(m->max_anisotropy, 1);
+    m->max_anisotropy = sr_max(m->max_anisotropy, 1);
     if (!is_float && use.rgb_use == SR_PARAM_ILLUMINANT)
         m->white = sr_spd_from_rgb_illuminant(m->texels.space, (struct sr_rgb){1, 1, 1});
     sr_status status = sr_mapping_prepare(&m->mapping, error);

@@ -10,16 +10,6 @@ extern const struct sr_texture_model sr_texture_constant_model_float, sr_texture
     sr_texture_bilerp_float, sr_texture_bilerp_spectrum, sr_texture_checkerboard_float,
     sr_texture_checkerboard_spectrum, sr_texture_imagemap_float, sr_texture_imagemap_spectrum;
 
-/* The greater and the smaller of two; b where a is NaN. (fmaxf promises more about NaN and is a call into libm.) */
-static inline float greater(float a, float b)
-{
-    return a > b ? a : b;
-}
-static inline float smaller(float a, float b)
-{
-    return a < b ? a : b;
-}
-
 /* Puts the planar axes' defaults where none are given, and refuses a kind that does not exist. */
 sr_status sr_mapping_prepare(struct sr_mapping *m, struct sr_error *error);
 

@@ -56,7 +56,7 @@ struct sr_packed_texel sr_packed_texel_encode(struct sr_texture_use use, struct 
     if (use.rgb_use != SR_PARAM_ALBEDO) {
         // the curve of rgb / scale, with twice the greatest as scale: where the sigmoid is smoothest. The scale is
         // rounded before the division, so that costs nothing
-        t.scale = scale_to_packed(2 * fmaxf(rgb.r, fmaxf(rgb.g, rgb.b)));
+        t.scale = scale_to_packed(2 * sr_max(rgb.r, sr_max(rgb.g, rgb.b)));
         float scale = scale_from_packed(t.scale);
         float inv = scale > 0 ? 1 / scale : 0;
         rgb = (struct sr_rgb){rgb.r * inv, rgb.g * inv, rgb.b * inv};

@@ -58,10 +58,10 @@ static sr_status set_region(struct sr_pbrt_build *b, const struct film *f, struc
         s->y0 = clamp_int(ceil(bounds[2] * y), 0, h);
         s->y1 = clamp_int(ceil(bounds[3] * y), 0, h);
     } else if (crop) {
-        s->x0 = clamp_int(ceilf((float)w * fminf(crop[0], crop[1])), 0, w);
-        s->x1 = clamp_int(ceilf((float)w * fmaxf(crop[0], crop[1])), 0, w);
-        s->y0 = clamp_int(ceilf((float)h * fminf(crop[2], crop[3])), 0, h);
-        s->y1 = clamp_int(ceilf((float)h * fmaxf(crop[2], crop[3])), 0, h);
+        s->x0 = clamp_int(ceilf((float)w * sr_min(crop[0], crop[1])), 0, w);
+        s->x1 = clamp_int(ceilf((float)w * sr_max(crop[0], crop[1])), 0, w);
+        s->y0 = clamp_int(ceilf((float)h * sr_min(crop[2], crop[3])), 0, h);
+        s->y1 = clamp_int(ceilf((float)h * sr_max(crop[2], crop[3])), 0, h);
     }
     if (s->x0 >= s->x1 || s->y0 >= s->y1)
         return sr_pbrt_fail(b->d, b->d->film.where, b->error, SR_ERROR_INPUT, "Film: no pixel is inside of the part to render, x %d to %d, y %d to %d",

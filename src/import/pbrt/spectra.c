@@ -106,7 +106,7 @@ static sr_status from_rgb(struct sr_pbrt_build *b, const struct sr_pbrt_entity *
         return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"rgb %s\" of %s \"%s\" has %u values: expected 3", p->name, e->directive, e->model,
                             p->count);
     struct sr_rgb rgb = {p->floats[0], p->floats[1], p->floats[2]};
-    float largest = fmaxf(rgb.r, fmaxf(rgb.g, rgb.b));
+    float largest = sr_max(rgb.r, sr_max(rgb.g, rgb.b));
     if (kind == SR_PARAM_ALBEDO && largest > 1)
         return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"rgb %s\" of %s \"%s\" has the component %g: expected 0 to 1, for it is a reflectance",
                             p->name, e->directive, e->model, (double)largest);
