@@ -23,8 +23,8 @@ static sr_status describe(struct sr_pbrt_build *b, enum sr_light_choice *choice)
     return status;
 }
 
-static sr_status import(const char *path, const struct sr_import_options *options, struct sr_import_result *result, struct sr_log *log,
-                        struct sr_error *error)
+static sr_status import(const char *path, const struct sr_import_options *options, struct sr_import_result *result,
+                        struct sr_log *log, struct sr_error *error)
 {
     double start_s = sr_clock_s();
     struct sr_pbrt_description d = {0};
@@ -57,8 +57,8 @@ static sr_status import(const char *path, const struct sr_import_options *option
     return status;
 }
 
-sr_status sr_import_pbrt(const char *path, const struct sr_import_options *options, struct sr_import_result *result, struct sr_log *log,
-                         struct sr_error *error)
+sr_status sr_import_pbrt(const char *path, const struct sr_import_options *options, struct sr_import_result *result,
+                         struct sr_log *log, struct sr_error *error)
 {
     static const struct sr_import_options nothing;
     *result = (struct sr_import_result){0};

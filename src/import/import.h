@@ -10,15 +10,15 @@
 
 /* What the caller wants otherwise than the file says; zero members leave the file's word. */
 struct sr_import_options {
-    int threads;               // for reading and building; 0: all processors
-    uint32_t spp;              // samples per pixel
-    uint32_t width, height;    // [pixel]
-    bool has_crop;             // crop_window: x0 x1 y0 y1 as shares of the picture
-    float crop_window[4];      // [1]
-    bool has_pixel_bounds;     // pixel_bounds: x0 x1 y0 y1
-    int32_t pixel_bounds[4];   // [pixel]
-    bool quick;                // for a first look: a quarter of the width, height and samples
-    const char *integrator;    // NULL, or the estimator to use instead of the file's
+    int threads;             // for reading and building; 0: all processors
+    uint32_t spp;            // samples per pixel
+    uint32_t width, height;  // [pixel]
+    bool has_crop;           // crop_window: x0 x1 y0 y1 as shares of the picture
+    float crop_window[4];    // [1]
+    bool has_pixel_bounds;   // pixel_bounds: x0 x1 y0 y1
+    int32_t pixel_bounds[4]; // [pixel]
+    bool quick;              // for a first look: a quarter of the width, height and samples
+    const char *integrator;  // NULL, or the estimator to use instead of the file's
 };
 
 /* Everything that a render needs; owned by the scene's arena but for the scene itself. */
@@ -31,13 +31,14 @@ struct sr_import_result {
     enum sr_sampler_kind sampler;
     uint32_t spp, seed;
     bool jitter_pixel, jitter_lambda;
-    uint64_t hash;             // of all bytes that were read: scene files, meshes, images
-    double read_s;             // [s] reading and describing, without building
+    uint64_t hash; // of all bytes that were read: scene files, meshes, images
+    double read_s; // [s] reading and describing, without building
 };
 
 /* Reads a scene and finishes it. path "-" is standard input. On failure the result is empty and the error says what, where
  * (file:line:column) and what was expected. */
-sr_status sr_import_pbrt(const char *path, const struct sr_import_options *options, struct sr_import_result *result, struct sr_log *log, struct sr_error *error);
+sr_status sr_import_pbrt(const char *path, const struct sr_import_options *options, struct sr_import_result *result,
+                         struct sr_log *log, struct sr_error *error);
 void sr_import_result_free(struct sr_import_result *result);
 
 #endif

@@ -34,7 +34,9 @@ const char *sr_number_read_hex(const char *p, double *value)
     double v = 0;
     const char *start = p;
     for (;; ++p) {
-        int digit = *p >= '0' && *p <= '9' ? *p - '0' : (*p | 32) >= 'a' && (*p | 32) <= 'f' ? (*p | 32) - 'a' + 10 : -1;
+        int digit = *p >= '0' && *p <= '9'                 ? *p - '0'
+                    : (*p | 32) >= 'a' && (*p | 32) <= 'f' ? (*p | 32) - 'a' + 10
+                                                           : -1;
         if (digit < 0)
             break;
         v = v * 16 + digit;

@@ -21,8 +21,8 @@ struct reader {
 
 static sr_status cut_short(const struct reader *r, const char *element, uint64_t i, uint64_t count)
 {
-    return sr_fail(r->error, SR_ERROR_INPUT, "%s: is cut short: it ends in %s %llu, expected %llu of them", r->label, element,
-                   (unsigned long long)i + 1, (unsigned long long)count);
+    return sr_fail(r->error, SR_ERROR_INPUT, "%s: is cut short: it ends in %s %llu, expected %llu of them", r->label,
+                   element, (unsigned long long)i + 1, (unsigned long long)count);
 }
 
 /* ---- single values ---- */
@@ -138,7 +138,8 @@ enum { COMPONENTS = 8 }; // x y z nx ny nz u v
 static void find_vertex_properties(const struct sr_ply_element *e, int which[COMPONENTS])
 {
     static const char *const names[6] = {"x", "y", "z", "nx", "ny", "nz"};
-    static const char *const uv[4][2] = {{"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}};
+    static const char *const uv[4][2] = {
+        {"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}};
     for (int c = 0; c < 6; ++c)
         which[c] = sr_ply_find_property(e, names[c]);
     which[6] = which[7] = -1;
@@ -197,7 +198,8 @@ static sr_status read_vertices(struct reader *r, const struct sr_ply_element *e,
     if (which[0] < 0 || which[1] < 0 || which[2] < 0)
         return sr_fail(r->error, SR_ERROR_INPUT, "%s: its vertices have no x, y and z", r->label);
     if (e->count > INT32_MAX)
-        return sr_fail(r->error, SR_ERROR_INPUT, "%s: has %llu vertices, expected at most 2147483647", r->label, (unsigned long long)e->count);
+        return sr_fail(r->error, SR_ERROR_INPUT, "%s: has %llu vertices, expected at most 2147483647", r->label,
+                       (unsigned long long)e->count);
     size_t n = (size_t)e->count;
     mesh->vertex_count = (uint32_t)n;
     mesh->P = sr_arena_alloc(&mesh->memory, n * sizeof(sr_vec3) + 16);
@@ -206,8 +208,9 @@ static sr_status read_vertices(struct reader *r, const struct sr_ply_element *e,
     if (!mesh->P || (which[3] >= 0 && !mesh->N) || (which[6] >= 0 && !mesh->uv))
         return sr_fail(r->error, SR_ERROR_RESOURCE, "%s: not enough memory for its %zu vertices", r->label, n);
 
-    if (r->format == SR_PLY_LITTLE_ENDIAN && is_little_endian() && e->list_count == 0 && are_floats_in_a_row(e, which, 3) &&
-        (which[3] < 0 || are_floats_in_a_row(e, which + 3, 3)) && (which[6] < 0 || are_floats_in_a_row(e, which + 6, 2))) {
+    if (r->format == SR_PLY_LITTLE_ENDIAN && is_little_endian() && e->list_count == 0 &&
+        are_floats_in_a_row(e, which, 3) && (which[3] < 0 || are_floats_in_a_row(e, which + 3, 3)) &&
+        (which[6] < 0 || are_floats_in_a_row(e, which + 6, 2))) {
         gather(mesh->P, r->p + e->properties[which[0]].offset, e->least_size, sizeof(sr_vec3), n);
         if (mesh->N)
             gather(mesh->N, r->p + e->properties[which[3]].offset, e->least_size, sizeof(sr_vec3), n);
@@ -226,7 +229,8 @@ static sr_status read_vertices(struct reader *r, const struct sr_ply_element *e,
         double values[COMPONENTS] = {0};
         for (uint32_t k = 0; k < e->property_count; ++k) {
             double value = 0;
-            bool ok = e->properties[k].is_list ? skip_list(r, &e->properties[k]) : read_value(r, e->properties[k].type, &value);
+            bool ok = e->properties[k].is_list ? skip_list(r, &e->properties[k])
+                                               : read_value(r, e->properties[k].type, &value);
             if (!ok)
                 return cut_short(r, e->name, i, e->count);
             if (component_of[k] >= 0)
@@ -245,11 +249,13 @@ static sr_status read_vertices(struct reader *r, const struct sr_ply_element *e,
 
 static sr_status no_memory_for_faces(const struct reader *r, uint64_t count)
 {
-    return sr_fail(r->error, SR_ERROR_RESOURCE, "%s: not enough memory for its %llu faces", r->label, (unsigned long long)count);
+    return sr_fail(r->error, SR_ERROR_RESOURCE, "%s: not enough memory for its %llu faces", r->label,
+                   (unsigned long long)count);
 }
 
 /* All faces have `corners` corners and nothing else, in 32 bits: copied in strides. */
-static sr_status read_uniform_faces(struct reader *r, const struct sr_ply_element *e, uint32_t corners, struct sr_ply_mesh *mesh, bool *done)
+static sr_status read_uniform_faces(struct reader *r, const struct sr_ply_element *e, uint32_t corners,
+                                    struct sr_ply_mesh *mesh, bool *done)
 {
     size_t n = (size_t)e->count, stride = 1 + 4 * (size_t)corners;
     *done = false;
@@ -297,19 +303,22 @@ static bool push_face(struct face_lists *l, int32_t face, struct sr_ply_mesh *me
         return ok && push_int(&l->quad_faces, face);
     }
     for (size_t i = 2; i < n && ok; ++i)
-        ok = push_int(&l->triangles, c[0]) && push_int(&l->triangles, c[i - 1]) && push_int(&l->triangles, c[i]) && push_int(&l->triangle_faces, face);
+        ok = push_int(&l->triangles, c[0]) && push_int(&l->triangles, c[i - 1]) && push_int(&l->triangles, c[i]) &&
+             push_int(&l->triangle_faces, face);
     mesh->fan_count += n > 4;
     return ok;
 }
 
-static sr_status read_corners(struct reader *r, const struct sr_ply_property *p, struct face_lists *l, uint64_t i, uint64_t count)
+static sr_status read_corners(struct reader *r, const struct sr_ply_property *p, struct face_lists *l, uint64_t i,
+                              uint64_t count)
 {
     double corners, value;
     l->corners.count = 0;
     if (!read_value(r, p->count_type, &corners))
         return cut_short(r, "face", i, count);
     if (corners < 0 || corners > (double)(r->end - r->p))
-        return sr_fail(r->error, SR_ERROR_INPUT, "%s: face %llu says that it has %.0f corners, more than the file holds", r->label,
+        return sr_fail(r->error, SR_ERROR_INPUT,
+                       "%s: face %llu says that it has %.0f corners, more than the file holds", r->label,
                        (unsigned long long)i + 1, corners);
     for (uint32_t k = 0; k < (uint32_t)corners; ++k) {
         if (!read_value(r, p->type, &value))
@@ -322,8 +331,8 @@ static sr_status read_corners(struct reader *r, const struct sr_ply_property *p,
     return SR_OK;
 }
 
-static sr_status read_faces_one_by_one(struct reader *r, const struct sr_ply_element *e, int corners, int face_index, struct face_lists *l,
-                                       struct sr_ply_mesh *mesh)
+static sr_status read_faces_one_by_one(struct reader *r, const struct sr_ply_element *e, int corners, int face_index,
+                                       struct face_lists *l, struct sr_ply_mesh *mesh)
 {
     for (uint64_t i = 0; i < e->count; ++i) {
         double face = 0;
@@ -360,15 +369,17 @@ static sr_status read_faces(struct reader *r, const struct sr_ply_element *e, st
     if (corners < 0)
         corners = sr_ply_find_property(e, "vertex_index");
     if (corners < 0 || !e->properties[corners].is_list || e->properties[corners].type >= SR_PLY_FLOAT32)
-        return sr_fail(r->error, SR_ERROR_INPUT, "%s: its faces have no list of whole numbers \"vertex_indices\"", r->label);
+        return sr_fail(r->error, SR_ERROR_INPUT, "%s: its faces have no list of whole numbers \"vertex_indices\"",
+                       r->label);
     if (e->count > INT32_MAX)
-        return sr_fail(r->error, SR_ERROR_INPUT, "%s: has %llu faces, expected at most 2147483647", r->label, (unsigned long long)e->count);
+        return sr_fail(r->error, SR_ERROR_INPUT, "%s: has %llu faces, expected at most 2147483647", r->label,
+                       (unsigned long long)e->count);
     if (face_index >= 0 && e->properties[face_index].is_list)
         face_index = -1;
 
     const struct sr_ply_property *p = &e->properties[corners];
-    if (r->format == SR_PLY_LITTLE_ENDIAN && is_little_endian() && e->property_count == 1 && sr_ply_type_size(p->count_type) == 1 &&
-        sr_ply_type_size(p->type) == 4) {
+    if (r->format == SR_PLY_LITTLE_ENDIAN && is_little_endian() && e->property_count == 1 &&
+        sr_ply_type_size(p->count_type) == 1 && sr_ply_type_size(p->type) == 4) {
         bool done = false;
         sr_status status = read_uniform_faces(r, e, 3, mesh, &done);
         if (status == SR_OK && !done)
@@ -405,7 +416,8 @@ static sr_status check_indices(const struct reader *r, const int32_t *indices, s
     size_t i = 0;
     while ((uint32_t)indices[i] < vertex_count)
         ++i;
-    return sr_fail(r->error, SR_ERROR_INPUT, "%s: a face names vertex %d, expected 0 to %lld", r->label, (int)indices[i], (long long)vertex_count - 1);
+    return sr_fail(r->error, SR_ERROR_INPUT, "%s: a face names vertex %d, expected 0 to %lld", r->label,
+                   (int)indices[i], (long long)vertex_count - 1);
 }
 
 /* ---- the whole ---- */
@@ -418,8 +430,11 @@ static sr_status read_body(struct reader *r, const struct sr_ply_header *h, stru
         // the last value of an ascii file may end without a space
         uint64_t left = (uint64_t)(r->end - r->p) + (h->format == SR_PLY_ASCII);
         if (e->least_size && e->count > left / e->least_size)
-            return sr_fail(r->error, SR_ERROR_INPUT, "%s: is cut short: its head promises %llu of element \"%s\", at least %u bytes each, but %llu bytes are left",
-                           r->label, (unsigned long long)e->count, e->name, e->least_size, (unsigned long long)(r->end - r->p));
+            return sr_fail(r->error, SR_ERROR_INPUT,
+                           "%s: is cut short: its head promises %llu of element \"%s\", at least %u bytes each, but "
+                           "%llu bytes are left",
+                           r->label, (unsigned long long)e->count, e->name, e->least_size,
+                           (unsigned long long)(r->end - r->p));
         sr_status status;
         if (strcmp(e->name, "vertex") == 0 && !has_vertices) {
             has_vertices = true;
@@ -433,19 +448,22 @@ static sr_status read_body(struct reader *r, const struct sr_ply_header *h, stru
             return status;
     }
     if (!has_vertices || !has_faces || mesh->triangle_count + mesh->quad_count == 0)
-        return sr_fail(r->error, SR_ERROR_INPUT, "%s: expected elements \"vertex\" and \"face\", and at least one face", r->label);
+        return sr_fail(r->error, SR_ERROR_INPUT, "%s: expected elements \"vertex\" and \"face\", and at least one face",
+                       r->label);
     sr_status status = check_indices(r, mesh->triangles, (size_t)mesh->triangle_count * 3, mesh->vertex_count);
     return status == SR_OK ? check_indices(r, mesh->quads, (size_t)mesh->quad_count * 4, mesh->vertex_count) : status;
 }
 
-sr_status sr_ply_decode(const char *label, const char *data, size_t size, struct sr_ply_mesh *mesh, struct sr_error *error)
+sr_status sr_ply_decode(const char *label, const char *data, size_t size, struct sr_ply_mesh *mesh,
+                        struct sr_error *error)
 {
     struct sr_ply_header *header = sr_alloc(sizeof *header); // too large for the stack of a thread
     *mesh = (struct sr_ply_mesh){0};
     if (!header)
         return sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", label);
     sr_status status = sr_ply_header_read(label, data, size, header, error);
-    struct reader r = {.label = label, .p = data + header->size, .end = data + size, .format = header->format, .error = error};
+    struct reader r = {
+        .label = label, .p = data + header->size, .end = data + size, .format = header->format, .error = error};
     if (status == SR_OK)
         status = read_body(&r, header, mesh);
     sr_free(header);

@@ -46,10 +46,12 @@ static bool find_type(const char *word, enum sr_ply_type *type)
     static const struct {
         const char *word;
         enum sr_ply_type type;
-    } words[] = {{"char", SR_PLY_INT8},     {"int8", SR_PLY_INT8},     {"uchar", SR_PLY_UINT8},   {"uint8", SR_PLY_UINT8},
-                 {"short", SR_PLY_INT16},   {"int16", SR_PLY_INT16},   {"ushort", SR_PLY_UINT16}, {"uint16", SR_PLY_UINT16},
-                 {"int", SR_PLY_INT32},     {"int32", SR_PLY_INT32},   {"uint", SR_PLY_UINT32},   {"uint32", SR_PLY_UINT32},
-                 {"float", SR_PLY_FLOAT32}, {"float32", SR_PLY_FLOAT32}, {"double", SR_PLY_FLOAT64}, {"float64", SR_PLY_FLOAT64}};
+    } words[] = {{"char", SR_PLY_INT8},      {"int8", SR_PLY_INT8},       {"uchar", SR_PLY_UINT8},
+                 {"uint8", SR_PLY_UINT8},    {"short", SR_PLY_INT16},     {"int16", SR_PLY_INT16},
+                 {"ushort", SR_PLY_UINT16},  {"uint16", SR_PLY_UINT16},   {"int", SR_PLY_INT32},
+                 {"int32", SR_PLY_INT32},    {"uint", SR_PLY_UINT32},     {"uint32", SR_PLY_UINT32},
+                 {"float", SR_PLY_FLOAT32},  {"float32", SR_PLY_FLOAT32}, {"double", SR_PLY_FLOAT64},
+                 {"float64", SR_PLY_FLOAT64}};
     for (size_t i = 0; i < sizeof words / sizeof *words; ++i)
         if (strcmp(word, words[i].word) == 0) {
             *type = words[i].type;
@@ -72,7 +74,8 @@ static bool read_count(const char *word, uint64_t *count)
 static sr_status read_element(const char *label, const struct line *l, struct sr_ply_header *h, struct sr_error *error)
 {
     if (h->element_count == SR_PLY_MAX_ELEMENTS)
-        return sr_fail(error, SR_ERROR_INPUT, "%s:%d: more than %d kinds of elements", label, l->number, SR_PLY_MAX_ELEMENTS);
+        return sr_fail(error, SR_ERROR_INPUT, "%s:%d: more than %d kinds of elements", label, l->number,
+                       SR_PLY_MAX_ELEMENTS);
     struct sr_ply_element *e = &h->elements[h->element_count];
     *e = (struct sr_ply_element){0};
     if (l->count != 3 || strlen(l->words[1]) >= sizeof e->name || !read_count(l->words[2], &e->count))
@@ -88,7 +91,8 @@ static sr_status read_property(const char *label, const struct line *l, struct s
         return sr_fail(error, SR_ERROR_INPUT, "%s:%d: a property before any element", label, l->number);
     struct sr_ply_element *e = &h->elements[h->element_count - 1];
     if (e->property_count == SR_PLY_MAX_PROPERTIES)
-        return sr_fail(error, SR_ERROR_INPUT, "%s:%d: more than %d properties", label, l->number, SR_PLY_MAX_PROPERTIES);
+        return sr_fail(error, SR_ERROR_INPUT, "%s:%d: more than %d properties", label, l->number,
+                       SR_PLY_MAX_PROPERTIES);
     struct sr_ply_property *p = &e->properties[e->property_count];
     *p = (struct sr_ply_property){.is_list = strcmp(l->words[1], "list") == 0, .offset = e->least_size};
     const char *name = l->words[p->is_list ? 4 : 2];
@@ -96,7 +100,9 @@ static sr_status read_property(const char *label, const struct line *l, struct s
     if (p->is_list)
         ok = ok && find_type(l->words[2], &p->count_type) && p->count_type < SR_PLY_FLOAT32;
     if (!ok)
-        return sr_fail(error, SR_ERROR_INPUT, "%s:%d: expected \"property TYPE NAME\" or \"property list INTEGER_TYPE TYPE NAME\"", label, l->number);
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "%s:%d: expected \"property TYPE NAME\" or \"property list INTEGER_TYPE TYPE NAME\"", label,
+                       l->number);
     snprintf(p->name, sizeof p->name, "%.31s", name);
     // in ascii each value takes at least one digit and one space
     e->least_size += h->format == SR_PLY_ASCII ? 2 : sr_ply_type_size(p->is_list ? p->count_type : p->type);
@@ -105,7 +111,8 @@ static sr_status read_property(const char *label, const struct line *l, struct s
     return SR_OK;
 }
 
-sr_status sr_ply_header_read(const char *label, const char *data, size_t size, struct sr_ply_header *h, struct sr_error *error)
+sr_status sr_ply_header_read(const char *label, const char *data, size_t size, struct sr_ply_header *h,
+                             struct sr_error *error)
 {
     struct line l = {.count = 0};
     bool has_format = false;
@@ -125,18 +132,22 @@ sr_status sr_ply_header_read(const char *label, const char *data, size_t size, s
                     has_format = true;
                 }
             if (!has_format || h->element_count)
-                return sr_fail(error, SR_ERROR_INPUT, "%s:%d: expected \"format ascii|binary_little_endian|binary_big_endian 1.0\" before the elements",
-                               label, l.number);
+                return sr_fail(
+                    error, SR_ERROR_INPUT,
+                    "%s:%d: expected \"format ascii|binary_little_endian|binary_big_endian 1.0\" before the elements",
+                    label, l.number);
         } else if (strcmp(word, "element") == 0)
             status = read_element(label, &l, h, error);
         else if (strcmp(word, "property") == 0)
             status = read_property(label, &l, h, error);
         else if (strcmp(word, "end_header") == 0) {
             h->size = at;
-            return has_format ? SR_OK : sr_fail(error, SR_ERROR_INPUT, "%s: expected a line \"format …\" in the head", label);
+            return has_format ? SR_OK
+                              : sr_fail(error, SR_ERROR_INPUT, "%s: expected a line \"format …\" in the head", label);
         } else if (l.count && strcmp(word, "comment") != 0 && strcmp(word, "obj_info") != 0)
-            return sr_fail(error, SR_ERROR_INPUT, "%s:%d: unknown word in the head: expected format, comment, element, property or end_header", label,
-                           l.number);
+            return sr_fail(error, SR_ERROR_INPUT,
+                           "%s:%d: unknown word in the head: expected format, comment, element, property or end_header",
+                           label, l.number);
         if (status != SR_OK)
             return status;
         if (l.number > 4096)

@@ -5,7 +5,16 @@
 
 #include "base/base.h"
 
-enum sr_ply_type { SR_PLY_INT8, SR_PLY_UINT8, SR_PLY_INT16, SR_PLY_UINT16, SR_PLY_INT32, SR_PLY_UINT32, SR_PLY_FLOAT32, SR_PLY_FLOAT64 };
+enum sr_ply_type {
+    SR_PLY_INT8,
+    SR_PLY_UINT8,
+    SR_PLY_INT16,
+    SR_PLY_UINT16,
+    SR_PLY_INT32,
+    SR_PLY_UINT32,
+    SR_PLY_FLOAT32,
+    SR_PLY_FLOAT64
+};
 enum sr_ply_format { SR_PLY_ASCII, SR_PLY_LITTLE_ENDIAN, SR_PLY_BIG_ENDIAN };
 
 struct sr_ply_property {
@@ -39,7 +48,8 @@ static inline uint32_t sr_ply_type_size(enum sr_ply_type type)
     return sizes[type];
 }
 
-sr_status sr_ply_header_read(const char *label, const char *data, size_t size, struct sr_ply_header *header, struct sr_error *error);
+sr_status sr_ply_header_read(const char *label, const char *data, size_t size, struct sr_ply_header *header,
+                             struct sr_error *error);
 int sr_ply_find_property(const struct sr_ply_element *element, const char *name); // -1: none
 
 #endif

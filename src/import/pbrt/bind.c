@@ -12,44 +12,52 @@ sr_status sr_pbrt_no_memory(struct sr_pbrt_build *b)
 
 sr_status sr_pbrt_wrap(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_error *inner)
 {
-    return sr_pbrt_fail(b->d, e->where, b->error, inner->status, "%s \"%s\": %s", e->directive, e->name ? e->name : e->model, inner->text);
+    return sr_pbrt_fail(b->d, e->where, b->error, inner->status, "%s \"%s\": %s", e->directive,
+                        e->name ? e->name : e->model, inner->text);
 }
 
-sr_status sr_pbrt_unsupported(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const char *const *names, size_t count)
+sr_status sr_pbrt_unsupported(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const char *const *names,
+                              size_t count)
 {
     char list[512];
     size_t n = 0;
     list[0] = 0;
     for (size_t i = 0; i < count && n < sizeof list; ++i)
         n += (size_t)snprintf(list + n, sizeof list - n, "%s%s", i ? ", " : "", names[i]);
-    return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "%s \"%s\" is not supported yet; supported: %s", e->directive, e->model, list);
+    return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "%s \"%s\" is not supported yet; supported: %s",
+                        e->directive, e->model, list);
 }
 
 /* ---- messages about one parameter ---- */
 
-static sr_status wrong_type(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p, const char *expected)
+static sr_status wrong_type(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p,
+                            const char *expected)
 {
-    return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"%s %s\" of %s \"%s\" has the wrong type: expected %s", sr_pbrt_type_name(p->type),
-                        p->name, e->directive, e->model, expected);
+    return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT,
+                        "\"%s %s\" of %s \"%s\" has the wrong type: expected %s", sr_pbrt_type_name(p->type), p->name,
+                        e->directive, e->model, expected);
 }
 
-static sr_status wrong_count(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p, uint32_t expected)
+static sr_status wrong_count(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p,
+                             uint32_t expected)
 {
-    return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"%s %s\" of %s \"%s\" has %u values: expected %u", sr_pbrt_type_name(p->type),
-                        p->name, e->directive, e->model, p->count, expected);
+    return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"%s %s\" of %s \"%s\" has %u values: expected %u",
+                        sr_pbrt_type_name(p->type), p->name, e->directive, e->model, p->count, expected);
 }
 
-static sr_status check_range(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p, const struct sr_param *row,
-                             double value)
+static sr_status check_range(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p,
+                             const struct sr_param *row, double value)
 {
     if (value >= row->min && value <= row->max)
         return SR_OK;
     const char *unit = row->unit && strcmp(row->unit, "1") != 0 ? row->unit : "";
     if (isinf(row->max))
-        return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"%s %s\" of %s \"%s\" is %g: expected %g or more%s%s", sr_pbrt_type_name(p->type),
+        return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT,
+                            "\"%s %s\" of %s \"%s\" is %g: expected %g or more%s%s", sr_pbrt_type_name(p->type),
                             p->name, e->directive, e->model, value, row->min, *unit ? " " : "", unit);
-    return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"%s %s\" of %s \"%s\" is %g: expected %g to %g%s%s", sr_pbrt_type_name(p->type),
-                        p->name, e->directive, e->model, value, row->min, row->max, *unit ? " " : "", unit);
+    return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"%s %s\" of %s \"%s\" is %g: expected %g to %g%s%s",
+                        sr_pbrt_type_name(p->type), p->name, e->directive, e->model, value, row->min, row->max,
+                        *unit ? " " : "", unit);
 }
 
 /* ---- kinds ---- */
@@ -59,8 +67,8 @@ static bool is_vector3(enum sr_pbrt_type t)
     return t == SR_PBRT_POINT3 || t == SR_PBRT_VECTOR3 || t == SR_PBRT_NORMAL;
 }
 
-static sr_status one_number(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p, const struct sr_param *row,
-                            double *value)
+static sr_status one_number(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p,
+                            const struct sr_param *row, double *value)
 {
     if (p->type != SR_PBRT_FLOAT && p->type != SR_PBRT_INTEGER)
         return wrong_type(b, e, p, "float");
@@ -83,7 +91,8 @@ static int find_choice(const char *choices, const char *word)
     return -1;
 }
 
-static sr_status bind_text(struct sr_pbrt_build *b, const struct sr_param *row, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p, void *member)
+static sr_status bind_text(struct sr_pbrt_build *b, const struct sr_param *row, const struct sr_pbrt_entity *e,
+                           const struct sr_pbrt_param *p, void *member)
 {
     if (p->type != SR_PBRT_STRING_TYPE)
         return wrong_type(b, e, p, "string");
@@ -92,17 +101,20 @@ static sr_status bind_text(struct sr_pbrt_build *b, const struct sr_param *row, 
     if (row->kind == SR_PARAM_ENUM) {
         int index = find_choice(row->text, p->strings[0]);
         if (index < 0)
-            return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"string %s\" of %s \"%s\" is \"%s\": expected %s", p->name, e->directive,
-                                e->model, p->strings[0], row->text);
+            return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT,
+                                "\"string %s\" of %s \"%s\" is \"%s\": expected %s", p->name, e->directive, e->model,
+                                p->strings[0], row->text);
         *(int32_t *)member = index;
         return SR_OK;
     }
-    const char *text = row->kind == SR_PARAM_FILE ? sr_pbrt_resolve(b, b->arena, p->strings[0], p->where) : sr_arena_string(b->arena, p->strings[0]);
+    const char *text = row->kind == SR_PARAM_FILE ? sr_pbrt_resolve(b, b->arena, p->strings[0], p->where)
+                                                  : sr_arena_string(b->arena, p->strings[0]);
     *(const char **)member = text;
     return text ? SR_OK : sr_pbrt_no_memory(b);
 }
 
-static sr_status bind_tuple(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p, uint32_t arity, void *member)
+static sr_status bind_tuple(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p,
+                            uint32_t arity, void *member)
 {
     bool is_2d = p->type == SR_PBRT_POINT2 || p->type == SR_PBRT_VECTOR2 || p->type == SR_PBRT_FLOAT;
     if (arity == 2 ? !is_2d : !is_vector3(p->type))
@@ -114,18 +126,26 @@ static sr_status bind_tuple(struct sr_pbrt_build *b, const struct sr_pbrt_entity
 }
 
 /* Long runs are used where they lie; the short ones are copied to the scene. */
-static sr_status bind_run(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p, const struct sr_param *row, void *member)
+static sr_status bind_run(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p,
+                          const struct sr_param *row, void *member)
 {
-    uint32_t arity = row->kind == SR_PARAM_INTS || row->kind == SR_PARAM_FLOATS ? 1 : row->kind == SR_PARAM_POINT2S ? 2 : 3;
+    uint32_t arity = row->kind == SR_PARAM_INTS || row->kind == SR_PARAM_FLOATS ? 1
+                     : row->kind == SR_PARAM_POINT2S                            ? 2
+                                                                                : 3;
     if (row->kind == SR_PARAM_INTS ? p->type != SR_PBRT_INTEGER : !p->floats)
-        return wrong_type(b, e, p, row->kind == SR_PARAM_INTS ? "integer" : arity == 1 ? "float" : arity == 2 ? "point2" : "point3, vector3 or normal");
+        return wrong_type(b, e, p,
+                          row->kind == SR_PARAM_INTS ? "integer"
+                          : arity == 1               ? "float"
+                          : arity == 2               ? "point2"
+                                                     : "point3, vector3 or normal");
     if (arity == 3 && !is_vector3(p->type))
         return wrong_type(b, e, p, "point3, vector3 or normal");
     if (arity == 2 && p->type != SR_PBRT_POINT2 && p->type != SR_PBRT_VECTOR2 && p->type != SR_PBRT_FLOAT)
         return wrong_type(b, e, p, "point2");
     if (p->count % arity != 0)
-        return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"%s %s\" has %u values: expected a multiple of %u", sr_pbrt_type_name(p->type),
-                            p->name, p->count, arity);
+        return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT,
+                            "\"%s %s\" has %u values: expected a multiple of %u", sr_pbrt_type_name(p->type), p->name,
+                            p->count, arity);
     size_t size = p->count * sizeof(float);
     const void *data = p->ints ? (const void *)p->ints : p->floats;
     if (size <= SR_PBRT_SHORT_RUN_B) {
@@ -143,25 +163,27 @@ static enum sr_param_kind spectrum_kind(enum sr_param_kind row, struct sr_pbrt_u
 {
     if (use.is_child && (row == SR_PARAM_ALBEDO || row == SR_PARAM_ALBEDO_TEXTURE))
         return use.parent;
-    return row == SR_PARAM_ALBEDO_TEXTURE ? SR_PARAM_ALBEDO : row == SR_PARAM_UNBOUNDED_TEXTURE ? SR_PARAM_UNBOUNDED : row;
+    return row == SR_PARAM_ALBEDO_TEXTURE      ? SR_PARAM_ALBEDO
+           : row == SR_PARAM_UNBOUNDED_TEXTURE ? SR_PARAM_UNBOUNDED
+                                               : row;
 }
 
-static sr_status check_spectrum(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p, const struct sr_param *row,
-                                const struct sr_spd *s)
+static sr_status check_spectrum(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p,
+                                const struct sr_param *row, const struct sr_spd *s)
 {
     double largest = sr_spd_max(s);
     return largest > row->max * (1 + 1e-5) ? check_range(b, e, p, row, largest) : SR_OK;
 }
 
-static sr_status bind_spectrum(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p, const struct sr_param *row,
-                               enum sr_param_kind kind, struct sr_spd *s)
+static sr_status bind_spectrum(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p,
+                               const struct sr_param *row, enum sr_param_kind kind, struct sr_spd *s)
 {
     sr_status status = sr_pbrt_spectrum(b, e, p, kind, s);
     return status == SR_OK ? check_spectrum(b, e, p, row, s) : status;
 }
 
-static sr_status bind_texture(struct sr_pbrt_build *b, const struct sr_param *row, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p,
-                              struct sr_pbrt_use use, struct sr_texture *member)
+static sr_status bind_texture(struct sr_pbrt_build *b, const struct sr_param *row, const struct sr_pbrt_entity *e,
+                              const struct sr_pbrt_param *p, struct sr_pbrt_use use, struct sr_texture *member)
 {
     bool is_float = row->kind == SR_PARAM_FLOAT_TEXTURE;
     enum sr_param_kind kind = spectrum_kind(row->kind, use);
@@ -184,8 +206,8 @@ static sr_status bind_texture(struct sr_pbrt_build *b, const struct sr_param *ro
     return member->model ? SR_OK : sr_pbrt_no_memory(b);
 }
 
-static sr_status bind_value(struct sr_pbrt_build *b, const struct sr_param *row, const struct sr_pbrt_entity *e, struct sr_pbrt_param *p,
-                            struct sr_pbrt_use use, void *member)
+static sr_status bind_value(struct sr_pbrt_build *b, const struct sr_param *row, const struct sr_pbrt_entity *e,
+                            struct sr_pbrt_param *p, struct sr_pbrt_use use, void *member)
 {
     double number;
     sr_status status;
@@ -240,7 +262,8 @@ static sr_status bind_value(struct sr_pbrt_build *b, const struct sr_param *row,
     return SR_OK;
 }
 
-static sr_status bind_default(struct sr_pbrt_build *b, const struct sr_param *row, const struct sr_pbrt_entity *e, struct sr_pbrt_use use, void *member)
+static sr_status bind_default(struct sr_pbrt_build *b, const struct sr_param *row, const struct sr_pbrt_entity *e,
+                              struct sr_pbrt_use use, void *member)
 {
     float v = (float)row->initial;
     bool is_none = isnan(row->initial);
@@ -274,8 +297,9 @@ static sr_status bind_default(struct sr_pbrt_build *b, const struct sr_param *ro
     case SR_PARAM_ALBEDO:
     case SR_PARAM_UNBOUNDED:
         if (!is_none)
-            *(struct sr_spd *)member = use.is_child && use.parent == SR_PARAM_ILLUMINANT ? sr_spd_from_rgb_illuminant(e->space, (struct sr_rgb){v, v, v})
-                                                                                         : sr_spd_constant(v);
+            *(struct sr_spd *)member = use.is_child && use.parent == SR_PARAM_ILLUMINANT
+                                           ? sr_spd_from_rgb_illuminant(e->space, (struct sr_rgb){v, v, v})
+                                           : sr_spd_constant(v);
         break;
     case SR_PARAM_FLOAT_TEXTURE:
         if (!is_none)
@@ -284,9 +308,10 @@ static sr_status bind_default(struct sr_pbrt_build *b, const struct sr_param *ro
     case SR_PARAM_ALBEDO_TEXTURE:
     case SR_PARAM_UNBOUNDED_TEXTURE:
         if (!is_none)
-            *texture = sr_texture_constant_spectrum(b->arena, use.is_child && use.parent == SR_PARAM_ILLUMINANT
-                                                                  ? sr_spd_from_rgb_illuminant(e->space, (struct sr_rgb){v, v, v})
-                                                                  : sr_spd_constant(v));
+            *texture = sr_texture_constant_spectrum(b->arena,
+                                                    use.is_child && use.parent == SR_PARAM_ILLUMINANT
+                                                        ? sr_spd_from_rgb_illuminant(e->space, (struct sr_rgb){v, v, v})
+                                                        : sr_spd_constant(v));
         return is_none || texture->model ? SR_OK : sr_pbrt_no_memory(b);
     default: // files and runs: nothing
         break;
@@ -294,7 +319,8 @@ static sr_status bind_default(struct sr_pbrt_build *b, const struct sr_param *ro
     return SR_OK;
 }
 
-sr_status sr_pbrt_bind(struct sr_pbrt_build *b, const struct sr_param *table, const struct sr_pbrt_entity *e, struct sr_pbrt_use use, void *self)
+sr_status sr_pbrt_bind(struct sr_pbrt_build *b, const struct sr_param *table, const struct sr_pbrt_entity *e,
+                       struct sr_pbrt_use use, void *self)
 {
     for (const struct sr_param *row = table; row && row->name; ++row) {
         void *member = (char *)self + row->offset;
@@ -306,7 +332,8 @@ sr_status sr_pbrt_bind(struct sr_pbrt_build *b, const struct sr_param *table, co
     return SR_OK;
 }
 
-void sr_pbrt_warn_unused(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_param *table, const struct sr_param *more)
+void sr_pbrt_warn_unused(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_param *table,
+                         const struct sr_param *more)
 {
     for (uint32_t i = 0; i < e->params.count; ++i) {
         const struct sr_pbrt_param *p = &e->params.items[i];
@@ -318,7 +345,7 @@ void sr_pbrt_warn_unused(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e
             sr_pbrt_suggest(&s, row->name);
         for (const struct sr_param *row = more; row && row->name; ++row)
             sr_pbrt_suggest(&s, row->name);
-        sr_pbrt_warn(b->d, p->where, "unused parameter \"%s %s\" of %s \"%s\"%s", sr_pbrt_type_name(p->type), p->name, e->directive, e->model,
-                     sr_pbrt_suggestion_text(&s, buffer));
+        sr_pbrt_warn(b->d, p->where, "unused parameter \"%s %s\" of %s \"%s\"%s", sr_pbrt_type_name(p->type), p->name,
+                     e->directive, e->model, sr_pbrt_suggestion_text(&s, buffer));
     }
 }

@@ -34,47 +34,52 @@ struct sr_pbrt_build {
     const char *main_path;
     const struct sr_import_options *options;
     struct sr_import_result *result;
-    struct sr_arena *arena; // the scene's
+    struct sr_arena *arena;  // the scene's
     struct sr_arena scratch; // ends with the import
     struct sr_log *log;
     struct sr_error *error;
     int threads;
     uint64_t hash;
 
-    struct sr_array images;          // struct sr_pbrt_image
-    struct sr_array spectra;         // struct sr_pbrt_spectrum_file
-    struct sr_array late_textures;   // struct sr_pbrt_late_texture
+    struct sr_array images;                   // struct sr_pbrt_image
+    struct sr_array spectra;                  // struct sr_pbrt_spectrum_file
+    struct sr_array late_textures;            // struct sr_pbrt_late_texture
     struct sr_pbrt_bound_texture *textures;   // one for each of the description
     struct sr_pbrt_built_material *materials; // first those of Material directives, then the named ones
-    bool has_told_normalisation;     // that emission spectra are scaled to luminance 1
+    bool has_told_normalisation;              // that emission spectra are scaled to luminance 1
 };
 
 /* What the values of an entity are for, where its table alone does not say it. */
 struct sr_pbrt_use {
-    enum sr_param_kind parent; // for rows "of the parent's use" in tables of spectrum textures; otherwise SR_PARAM_ALBEDO
-    bool is_child;             // the table is a spectrum texture's
+    enum sr_param_kind
+        parent;    // for rows "of the parent's use" in tables of spectrum textures; otherwise SR_PARAM_ALBEDO
+    bool is_child; // the table is a spectrum texture's
 };
 
 /* bind.c: fills a zeroed struct by its table. Defaults where nothing is given; wrong types and values are errors. */
-sr_status sr_pbrt_bind(struct sr_pbrt_build *b, const struct sr_param *table, const struct sr_pbrt_entity *e, struct sr_pbrt_use use, void *self);
+sr_status sr_pbrt_bind(struct sr_pbrt_build *b, const struct sr_param *table, const struct sr_pbrt_entity *e,
+                       struct sr_pbrt_use use, void *self);
 /* Warns of parameters that nobody has asked for; tables (may be NULL) give the words to suggest. */
-void sr_pbrt_warn_unused(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_param *table, const struct sr_param *more);
+void sr_pbrt_warn_unused(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_param *table,
+                         const struct sr_param *more);
 sr_status sr_pbrt_no_memory(struct sr_pbrt_build *b);
 /* "file:line:column: Material \"diffuse\": …" around a message that knows no place. */
 sr_status sr_pbrt_wrap(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_error *inner);
 /* "… is not supported yet; supported: a, b, c" */
-sr_status sr_pbrt_unsupported(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const char *const *names, size_t count);
+sr_status sr_pbrt_unsupported(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const char *const *names,
+                              size_t count);
 
 /* files.c */
 char *sr_pbrt_resolve(struct sr_pbrt_build *b, struct sr_arena *arena, const char *name, struct sr_location where);
 
 /* spectra.c: the value of a parameter as a spectrum of one kind (ALBEDO, UNBOUNDED, ILLUMINANT). */
-sr_status sr_pbrt_spectrum(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p, enum sr_param_kind kind,
-                           struct sr_spd *out);
+sr_status sr_pbrt_spectrum(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p,
+                           enum sr_param_kind kind, struct sr_spd *out);
 
 /* images.c: each file is read once; path is resolved. gamma 0: sRGB, 1: linear, else the exponent of its bytes. for_good: the texels outlive
  * the import. */
-sr_status sr_pbrt_texels(struct sr_pbrt_build *b, const char *path, struct sr_location where, float gamma, bool for_good, struct sr_texels *out);
+sr_status sr_pbrt_texels(struct sr_pbrt_build *b, const char *path, struct sr_location where, float gamma,
+                         bool for_good, struct sr_texels *out);
 /* Reads the images that all late textures name, several at a time, so that sr_pbrt_texels finds them. */
 sr_status sr_pbrt_images_read_ahead(struct sr_pbrt_build *b);
 sr_status sr_pbrt_encoding(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const char *word, float *gamma);
@@ -82,16 +87,19 @@ void sr_pbrt_images_free(struct sr_pbrt_build *b);
 
 /* textures.c: a named texture, made for one use: SR_PARAM_FLOAT_TEXTURE, or the kind of spectrum. */
 sr_status sr_pbrt_finish_textures(struct sr_pbrt_build *b); // the late ones
-sr_status sr_pbrt_named_texture(struct sr_pbrt_build *b, const struct sr_pbrt_param *p, bool is_float, enum sr_param_kind use, struct sr_texture *out);
+sr_status sr_pbrt_named_texture(struct sr_pbrt_build *b, const struct sr_pbrt_param *p, bool is_float,
+                                enum sr_param_kind use, struct sr_texture *out);
 
 /* materials.c */
 void sr_pbrt_tell_normalisation(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e); // once
-sr_status sr_pbrt_material(struct sr_pbrt_build *b, const struct sr_pbrt_material_ref *ref, const struct sr_material **out);
+sr_status sr_pbrt_material(struct sr_pbrt_build *b, const struct sr_pbrt_material_ref *ref,
+                           const struct sr_material **out);
 sr_status sr_pbrt_materials(struct sr_pbrt_build *b, const struct sr_pbrt_param *p, struct sr_slice *out);
 
 /* lights.c and shapes.c add to the scene; settings.c fills the rest of the result. */
 sr_status sr_pbrt_build_lights(struct sr_pbrt_build *b);
-sr_status sr_pbrt_emission(struct sr_pbrt_build *b, uint32_t area_light1, float area, const struct sr_light_emission **out);
+sr_status sr_pbrt_emission(struct sr_pbrt_build *b, uint32_t area_light1, float area,
+                           const struct sr_light_emission **out);
 sr_status sr_pbrt_build_shapes(struct sr_pbrt_build *b);
 sr_status sr_pbrt_build_settings(struct sr_pbrt_build *b, enum sr_light_choice *choice);
 sr_status sr_pbrt_refuse_medium(struct sr_pbrt_build *b, const char *medium, struct sr_location where);

@@ -35,8 +35,9 @@ const char *sr_pbrt_text(struct sr_pbrt_description *d, const char *text, size_t
 
 void sr_pbrt_description_free(struct sr_pbrt_description *d)
 {
-    struct sr_array *arrays[] = {&d->files,  &d->options,     &d->transforms, &d->materials, &d->named_materials, &d->textures, &d->media,
-                                 &d->lights, &d->area_lights, &d->shapes,     &d->objects,   &d->instances};
+    struct sr_array *arrays[] = {&d->files,           &d->options,  &d->transforms, &d->materials,
+                                 &d->named_materials, &d->textures, &d->media,      &d->lights,
+                                 &d->area_lights,     &d->shapes,   &d->objects,    &d->instances};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; ++i)
         sr_array_free(arrays[i]);
     sr_arena_free(&d->words);
@@ -44,7 +45,8 @@ void sr_pbrt_description_free(struct sr_pbrt_description *d)
 }
 
 /* "file:line:column: sentence (included from …)" */
-static void compose(const struct sr_pbrt_description *d, struct sr_location where, char *text, size_t size, const char *format, va_list arguments)
+static void compose(const struct sr_pbrt_description *d, struct sr_location where, char *text, size_t size,
+                    const char *format, va_list arguments)
 {
     int n = where.file ? snprintf(text, size, "%s:%d:%d: ", where.file, where.line, where.column) : 0;
     if (n < 0 || (size_t)n >= size)
@@ -64,8 +66,8 @@ static void compose(const struct sr_pbrt_description *d, struct sr_location wher
     }
 }
 
-sr_status sr_pbrt_fail(const struct sr_pbrt_description *d, struct sr_location where, struct sr_error *error, sr_status status,
-                       const char *format, ...)
+sr_status sr_pbrt_fail(const struct sr_pbrt_description *d, struct sr_location where, struct sr_error *error,
+                       sr_status status, const char *format, ...)
 {
     char text[1024];
     va_list arguments;
@@ -143,20 +145,22 @@ struct sr_pbrt_param *sr_pbrt_find(const struct sr_pbrt_params *params, const ch
     return NULL;
 }
 
-static sr_status get(const struct sr_pbrt_description *d, const struct sr_pbrt_params *params, const char *name, enum sr_pbrt_type type,
-                     const struct sr_pbrt_param **p, struct sr_error *error)
+static sr_status get(const struct sr_pbrt_description *d, const struct sr_pbrt_params *params, const char *name,
+                     enum sr_pbrt_type type, const struct sr_pbrt_param **p, struct sr_error *error)
 {
     *p = sr_pbrt_find(params, name);
     if (!*p || ((*p)->type == type && (*p)->count == 1))
         return SR_OK;
     struct sr_location where = (*p)->where;
     if ((*p)->type == type)
-        return sr_pbrt_fail(d, where, error, SR_ERROR_INPUT, "\"%s %s\" has %u values: expected one", sr_pbrt_type_name(type), name, (*p)->count);
-    return sr_pbrt_fail(d, where, error, SR_ERROR_INPUT, "\"%s %s\" has the wrong type: expected \"%s %s\"", sr_pbrt_type_name((*p)->type), name,
-                        sr_pbrt_type_name(type), name);
+        return sr_pbrt_fail(d, where, error, SR_ERROR_INPUT, "\"%s %s\" has %u values: expected one",
+                            sr_pbrt_type_name(type), name, (*p)->count);
+    return sr_pbrt_fail(d, where, error, SR_ERROR_INPUT, "\"%s %s\" has the wrong type: expected \"%s %s\"",
+                        sr_pbrt_type_name((*p)->type), name, sr_pbrt_type_name(type), name);
 }
 
-sr_status sr_pbrt_get_float(const struct sr_pbrt_description *d, const struct sr_pbrt_params *params, const char *name, float *value, struct sr_error *e)
+sr_status sr_pbrt_get_float(const struct sr_pbrt_description *d, const struct sr_pbrt_params *params, const char *name,
+                            float *value, struct sr_error *e)
 {
     const struct sr_pbrt_param *p;
     sr_status status = get(d, params, name, SR_PBRT_FLOAT, &p, e);
@@ -165,7 +169,8 @@ sr_status sr_pbrt_get_float(const struct sr_pbrt_description *d, const struct sr
     return status;
 }
 
-sr_status sr_pbrt_get_int(const struct sr_pbrt_description *d, const struct sr_pbrt_params *params, const char *name, int32_t *value, struct sr_error *e)
+sr_status sr_pbrt_get_int(const struct sr_pbrt_description *d, const struct sr_pbrt_params *params, const char *name,
+                          int32_t *value, struct sr_error *e)
 {
     const struct sr_pbrt_param *p;
     sr_status status = get(d, params, name, SR_PBRT_INTEGER, &p, e);
@@ -174,7 +179,8 @@ sr_status sr_pbrt_get_int(const struct sr_pbrt_description *d, const struct sr_p
     return status;
 }
 
-sr_status sr_pbrt_get_bool(const struct sr_pbrt_description *d, const struct sr_pbrt_params *params, const char *name, bool *value, struct sr_error *e)
+sr_status sr_pbrt_get_bool(const struct sr_pbrt_description *d, const struct sr_pbrt_params *params, const char *name,
+                           bool *value, struct sr_error *e)
 {
     const struct sr_pbrt_param *p;
     sr_status status = get(d, params, name, SR_PBRT_BOOL, &p, e);
@@ -183,8 +189,8 @@ sr_status sr_pbrt_get_bool(const struct sr_pbrt_description *d, const struct sr_
     return status;
 }
 
-sr_status sr_pbrt_get_string(const struct sr_pbrt_description *d, const struct sr_pbrt_params *params, const char *name, const char **value,
-                             struct sr_error *e)
+sr_status sr_pbrt_get_string(const struct sr_pbrt_description *d, const struct sr_pbrt_params *params, const char *name,
+                             const char **value, struct sr_error *e)
 {
     const struct sr_pbrt_param *p;
     sr_status status = get(d, params, name, SR_PBRT_STRING_TYPE, &p, e);

@@ -33,13 +33,13 @@ struct sr_pbrt_param {
     enum sr_colour_space_id space; // in force where it stands
     const char *name;
     struct sr_location where;
-    uint32_t count;                // of the values below
-    bool is_text;                  // a spectrum that is a name
-    bool is_default;               // came from an Attribute directive: need not be used
+    uint32_t count;  // of the values below
+    bool is_text;    // a spectrum that is a name
+    bool is_default; // came from an Attribute directive: need not be used
     bool used;
-    const float *floats;           // BOOL and INTEGER: NULL
-    const int32_t *ints;           // BOOL (0, 1) and INTEGER
-    const char *const *strings;    // STRING, TEXTURE, SPECTRUM by name
+    const float *floats;        // BOOL and INTEGER: NULL
+    const int32_t *ints;        // BOOL (0, 1) and INTEGER
+    const char *const *strings; // STRING, TEXTURE, SPECTRUM by name
 };
 
 /* Runs of numbers up to this size are copied when a scene keeps them; longer ones lie in its arena from the start. */
@@ -82,8 +82,8 @@ struct sr_pbrt_material_ref {
 struct sr_pbrt_shape {
     struct sr_pbrt_entity entity;
     struct sr_pbrt_material_ref material;
-    uint32_t area_light1;        // index from 1 in area_lights; 0: dark
-    uint32_t object1;            // index from 1 in objects; 0: the world
+    uint32_t area_light1; // index from 1 in area_lights; 0: dark
+    uint32_t object1;     // index from 1 in objects; 0: the world
     bool reverse_orientation;
     const char *inside, *outside; // media; "" or NULL: none
     struct sr_location medium_where;
@@ -130,7 +130,7 @@ struct sr_pbrt_description {
     struct sr_location camera_medium_where;
     enum sr_colour_space_id film_space;
     float transform_start_time, transform_end_time; // [s]
-    bool has_world; // WorldBegin was there
+    bool has_world;                                 // WorldBegin was there
 
     struct sr_array options;         // struct sr_pbrt_option
     struct sr_array transforms;      // struct sr_pbrt_transform
@@ -150,7 +150,8 @@ struct sr_pbrt_description {
 
 /* Reads a file and all that it includes. data must outlive what is made of the description. The description is valid (and
  * must be freed) also after a failure. */
-sr_status sr_pbrt_read(const char *path, struct sr_arena *data, struct sr_log *log, struct sr_pbrt_description *out, struct sr_error *error);
+sr_status sr_pbrt_read(const char *path, struct sr_arena *data, struct sr_log *log, struct sr_pbrt_description *out,
+                       struct sr_error *error);
 /* The same from memory: label stands for the path. */
 sr_status sr_pbrt_read_text(const char *label, const char *text, size_t size, struct sr_arena *data, struct sr_log *log,
                             struct sr_pbrt_description *out, struct sr_error *error);
@@ -168,9 +169,10 @@ const char *sr_pbrt_text(struct sr_pbrt_description *d, const char *text, size_t
 
 /* "file:line:column: " and the sentence, and from where the file was included. */
 SR_PRINTF(5, 6)
-sr_status sr_pbrt_fail(const struct sr_pbrt_description *d, struct sr_location where, struct sr_error *error, sr_status status,
-                       const char *format, ...);
-SR_PRINTF(3, 4) void sr_pbrt_warn(const struct sr_pbrt_description *d, struct sr_location where, const char *format, ...);
+sr_status sr_pbrt_fail(const struct sr_pbrt_description *d, struct sr_location where, struct sr_error *error,
+                       sr_status status, const char *format, ...);
+SR_PRINTF(3, 4)
+void sr_pbrt_warn(const struct sr_pbrt_description *d, struct sr_location where, const char *format, ...);
 
 /* Remembers the candidate nearest to a misspelt word (optimal string alignment distance, case ignored). */
 struct sr_pbrt_suggestion {
@@ -184,9 +186,13 @@ const char *sr_pbrt_suggestion_text(const struct sr_pbrt_suggestion *s, char buf
 /* The entity's parameter of that name, whatever its type; marks it used. NULL: not given. */
 struct sr_pbrt_param *sr_pbrt_find(const struct sr_pbrt_params *params, const char *name);
 /* Values of a parameter of that name and type; the first initial value where there is none. A wrong type is an error. */
-sr_status sr_pbrt_get_float(const struct sr_pbrt_description *d, const struct sr_pbrt_params *p, const char *name, float *value, struct sr_error *e);
-sr_status sr_pbrt_get_int(const struct sr_pbrt_description *d, const struct sr_pbrt_params *p, const char *name, int32_t *value, struct sr_error *e);
-sr_status sr_pbrt_get_bool(const struct sr_pbrt_description *d, const struct sr_pbrt_params *p, const char *name, bool *value, struct sr_error *e);
-sr_status sr_pbrt_get_string(const struct sr_pbrt_description *d, const struct sr_pbrt_params *p, const char *name, const char **value, struct sr_error *e);
+sr_status sr_pbrt_get_float(const struct sr_pbrt_description *d, const struct sr_pbrt_params *p, const char *name,
+                            float *value, struct sr_error *e);
+sr_status sr_pbrt_get_int(const struct sr_pbrt_description *d, const struct sr_pbrt_params *p, const char *name,
+                          int32_t *value, struct sr_error *e);
+sr_status sr_pbrt_get_bool(const struct sr_pbrt_description *d, const struct sr_pbrt_params *p, const char *name,
+                           bool *value, struct sr_error *e);
+sr_status sr_pbrt_get_string(const struct sr_pbrt_description *d, const struct sr_pbrt_params *p, const char *name,
+                             const char **value, struct sr_error *e);
 
 #endif

@@ -58,13 +58,22 @@ static sr_status read_accelerator(struct sr_pbrt_parser *p)
 /* Option "type name" value; names are compared in lower case without - and _ */
 static sr_status read_option(struct sr_pbrt_parser *p)
 {
-    static const char *const known[] = {"disablepixeljitter", "disabletexturefiltering", "disablewavelengthjitter", "displacementedgescale",
-                                        "forcediffuse",       "msereferenceimage",       "msereferenceout",         "pixelstats",
-                                        "rendercoordsys",     "seed",                    "wavefront"};
+    static const char *const known[] = {"disablepixeljitter",
+                                        "disabletexturefiltering",
+                                        "disablewavelengthjitter",
+                                        "displacementedgescale",
+                                        "forcediffuse",
+                                        "msereferenceimage",
+                                        "msereferenceout",
+                                        "pixelstats",
+                                        "rendercoordsys",
+                                        "seed",
+                                        "wavefront"};
     struct sr_pbrt_params params;
     sr_status status = sr_pbrt_params_read(p->d, p->lexer, &p->scratch, p->state.space, no_defaults, &params, p->error);
     if (status == SR_OK && params.count != 1)
-        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "Option: expected one \"type name\" and its value");
+        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT,
+                            "Option: expected one \"type name\" and its value");
     if (status != SR_OK)
         return status;
     struct sr_pbrt_option *option = sr_array_push(&p->d->options, sizeof *option);
@@ -82,8 +91,8 @@ static sr_status read_option(struct sr_pbrt_parser *p)
             return SR_OK;
         sr_pbrt_suggest(&s, known[i]);
     }
-    return sr_pbrt_fail(p->d, option->value.where, p->error, SR_ERROR_INPUT, "Option: unknown option \"%s\"%s", option->value.name,
-                        sr_pbrt_suggestion_text(&s, buffer));
+    return sr_pbrt_fail(p->d, option->value.where, p->error, SR_ERROR_INPUT, "Option: unknown option \"%s\"%s",
+                        option->value.name, sr_pbrt_suggestion_text(&s, buffer));
 }
 
 static sr_status read_world_begin(struct sr_pbrt_parser *p)
@@ -120,8 +129,8 @@ static sr_status pop(struct sr_pbrt_parser *p, bool is_object)
                             is_object ? "ObjectBegin" : "AttributeBegin");
     const struct sr_pbrt_saved_state *saved = SR_PBRT_AT(p->stack, struct sr_pbrt_saved_state, p->stack.count - 1);
     if (saved->is_object != is_object)
-        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "%s: expected %s, which belongs to line %d", p->directive,
-                            saved->is_object ? "ObjectEnd" : "AttributeEnd", saved->where.line);
+        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "%s: expected %s, which belongs to line %d",
+                            p->directive, saved->is_object ? "ObjectEnd" : "AttributeEnd", saved->where.line);
     p->state = saved->state;
     --p->stack.count;
     return SR_OK;
@@ -140,7 +149,9 @@ static sr_status read_attribute_end(struct sr_pbrt_parser *p)
 static sr_status read_transform_begin(struct sr_pbrt_parser *p)
 {
     if (!p->has_warned_transform)
-        sr_pbrt_warn(p->d, p->where, "TransformBegin and TransformEnd are deprecated; they are read as AttributeBegin and AttributeEnd");
+        sr_pbrt_warn(
+            p->d, p->where,
+            "TransformBegin and TransformEnd are deprecated; they are read as AttributeBegin and AttributeEnd");
     p->has_warned_transform = true;
     return push(p, false);
 }
@@ -152,10 +163,14 @@ static sr_status read_attribute(struct sr_pbrt_parser *p)
     sr_status status = sr_pbrt_read_string(p, "\"shape\", \"light\", \"material\", \"medium\" or \"texture\"", &target);
     for (int i = 0; i < SR_PBRT_ATTRIBUTE_COUNT && status == SR_OK; ++i)
         if (strcmp(target, targets[i]) == 0) // the newest come first, and so win
-            return sr_pbrt_params_read(p->d, p->lexer, &p->scratch, p->state.space, p->state.attributes[i], &p->state.attributes[i], p->error);
-    return status != SR_OK ? status
-                           : sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT,
-                                          "Attribute \"%s\": expected \"shape\", \"light\", \"material\", \"medium\" or \"texture\"", target);
+            return sr_pbrt_params_read(p->d, p->lexer, &p->scratch, p->state.space, p->state.attributes[i],
+                                       &p->state.attributes[i], p->error);
+    return status != SR_OK
+               ? status
+               : sr_pbrt_fail(
+                     p->d, p->where, p->error, SR_ERROR_INPUT,
+                     "Attribute \"%s\": expected \"shape\", \"light\", \"material\", \"medium\" or \"texture\"",
+                     target);
 }
 
 static sr_status read_reverse_orientation(struct sr_pbrt_parser *p)
@@ -169,7 +184,8 @@ static sr_status read_colour_space(struct sr_pbrt_parser *p)
     const char *name;
     sr_status status = sr_pbrt_read_string(p, "the name of a colour space", &name);
     if (status == SR_OK && !sr_colour_space_find(name, &p->state.space))
-        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "ColorSpace \"%s\": expected srgb, dci-p3, rec2020 or aces2065-1", name);
+        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT,
+                            "ColorSpace \"%s\": expected srgb, dci-p3, rec2020 or aces2065-1", name);
     return status;
 }
 
@@ -205,12 +221,13 @@ static sr_status read_named(struct sr_pbrt_parser *p, struct sr_array *list, enu
     for (size_t i = 0; i < list->count; ++i) {
         const struct sr_pbrt_entity *other = SR_PBRT_AT(*list, struct sr_pbrt_entity, i);
         if (strcmp(other->name, e.name) == 0)
-            return sr_pbrt_fail(p->d, e.where, p->error, SR_ERROR_INPUT, "%s \"%s\": the name is taken, by %s:%d", e.directive, e.name,
-                                other->where.file, other->where.line);
+            return sr_pbrt_fail(p->d, e.where, p->error, SR_ERROR_INPUT, "%s \"%s\": the name is taken, by %s:%d",
+                                e.directive, e.name, other->where.file, other->where.line);
     }
     status = sr_pbrt_get_string(p->d, &e.params, "type", &e.model, p->error);
     if (status == SR_OK && !e.model)
-        return sr_pbrt_fail(p->d, e.where, p->error, SR_ERROR_INPUT, "%s \"%s\": expected a parameter \"string type\"", e.directive, e.name);
+        return sr_pbrt_fail(p->d, e.where, p->error, SR_ERROR_INPUT, "%s \"%s\": expected a parameter \"string type\"",
+                            e.directive, e.name);
     struct sr_pbrt_entity *slot = status == SR_OK ? sr_array_push(list, sizeof *slot) : NULL;
     if (slot)
         *slot = e;
@@ -234,7 +251,8 @@ static sr_status read_medium_interface(struct sr_pbrt_parser *p)
     sr_status status = sr_pbrt_read_string(p, "the name of the medium inside", &p->state.inside);
     p->state.outside = p->state.inside;
     p->state.medium_where = p->where;
-    if (status == SR_OK && (status = sr_pbrt_lexer_peek(p->lexer, &token, p->error)) == SR_OK && token.kind == SR_PBRT_STRING)
+    if (status == SR_OK && (status = sr_pbrt_lexer_peek(p->lexer, &token, p->error)) == SR_OK &&
+        token.kind == SR_PBRT_STRING)
         status = sr_pbrt_read_string(p, "the name of the medium outside", &p->state.outside);
     return status;
 }
@@ -249,18 +267,20 @@ static sr_status read_texture(struct sr_pbrt_parser *p)
         return status;
     bool is_float = strcmp(type, "float") == 0;
     if (!is_float && strcmp(type, "spectrum") != 0)
-        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "Texture \"%s\" \"%s\": expected \"float\" or \"spectrum\"", name, type);
+        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT,
+                            "Texture \"%s\" \"%s\": expected \"float\" or \"spectrum\"", name, type);
     for (size_t i = 0; i < p->d->textures.count; ++i) {
         const struct sr_pbrt_texture *other = SR_PBRT_AT(p->d->textures, struct sr_pbrt_texture, i);
         if (other->is_float == is_float && strcmp(other->entity.name, name) == 0)
-            return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "Texture \"%s\": the name is taken, by %s:%d", name,
-                                other->entity.where.file, other->entity.where.line);
+            return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "Texture \"%s\": the name is taken, by %s:%d",
+                                name, other->entity.where.file, other->entity.where.line);
     }
     struct sr_pbrt_texture *texture = sr_array_push(&p->d->textures, sizeof *texture);
     if (!texture)
         return no_memory(p);
     texture->is_float = is_float;
-    status = sr_pbrt_read_entity(p, "the name of a kind of texture", p->state.attributes[SR_PBRT_OF_TEXTURE], &texture->entity);
+    status = sr_pbrt_read_entity(p, "the name of a kind of texture", p->state.attributes[SR_PBRT_OF_TEXTURE],
+                                 &texture->entity);
     texture->entity.name = name;
     return status;
 }
@@ -269,8 +289,10 @@ static void warn_of_motion(struct sr_pbrt_parser *p)
 {
     if (!p->has_warned_motion && memcmp(p->state.ctm.start.m, p->state.ctm.end.m, sizeof p->state.ctm.start.m) != 0) {
         p->has_warned_motion = true;
-        sr_pbrt_warn(p->d, p->where, "this %s moves while the shutter is open: motion blur is not supported yet, all stands as at the start",
-                     p->directive);
+        sr_pbrt_warn(
+            p->d, p->where,
+            "this %s moves while the shutter is open: motion blur is not supported yet, all stands as at the start",
+            p->directive);
     }
 }
 
@@ -318,10 +340,12 @@ static sr_status read_object_begin(struct sr_pbrt_parser *p)
     const char *name;
     sr_status status = sr_pbrt_read_string(p, "a name for the object", &name);
     if (status == SR_OK && p->object1)
-        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "ObjectBegin \"%s\" inside of another object: expected ObjectEnd before it", name);
+        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT,
+                            "ObjectBegin \"%s\" inside of another object: expected ObjectEnd before it", name);
     for (size_t i = 0; i < p->d->objects.count && status == SR_OK; ++i)
         if (strcmp(SR_PBRT_AT(p->d->objects, struct sr_pbrt_object, i)->name, name) == 0)
-            return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "ObjectBegin \"%s\": the name is taken", name);
+            return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "ObjectBegin \"%s\": the name is taken",
+                                name);
     struct sr_pbrt_object *object = status == SR_OK ? sr_array_push(&p->d->objects, sizeof *object) : NULL;
     if (!object)
         return status != SR_OK ? status : no_memory(p);
@@ -344,10 +368,12 @@ static sr_status read_object_instance(struct sr_pbrt_parser *p)
     if (status != SR_OK)
         return status;
     if (p->object1)
-        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "ObjectInstance \"%s\" inside of an object: expected outside", name);
+        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT,
+                            "ObjectInstance \"%s\" inside of an object: expected outside", name);
     warn_of_motion(p);
     uint32_t transform = sr_pbrt_store_transform(p);
-    struct sr_pbrt_instance *instance = transform == UINT32_MAX ? NULL : sr_array_push(&p->d->instances, sizeof *instance);
+    struct sr_pbrt_instance *instance =
+        transform == UINT32_MAX ? NULL : sr_array_push(&p->d->instances, sizeof *instance);
     if (!instance)
         return no_memory(p);
     *instance = (struct sr_pbrt_instance){name, p->where, transform};
@@ -370,13 +396,15 @@ static sr_status read_import(struct sr_pbrt_parser *p)
     struct sr_location where = p->where;
     sr_status status = sr_pbrt_read_string(p, "the name of a file", &name);
     if (status == SR_OK && p->object1)
-        return sr_pbrt_fail(p->d, where, p->error, SR_ERROR_INPUT, "Import \"%s\" inside of an object: expected outside", name);
+        return sr_pbrt_fail(p->d, where, p->error, SR_ERROR_INPUT,
+                            "Import \"%s\" inside of an object: expected outside", name);
     struct sr_pbrt_state state = p->state;
     size_t depth = p->stack.count;
     if (status == SR_OK)
         status = sr_pbrt_include(p, name);
     if (status == SR_OK && p->stack.count != depth)
-        return sr_pbrt_fail(p->d, where, p->error, SR_ERROR_INPUT, "Import \"%s\": expected as many AttributeEnd as AttributeBegin in the file", name);
+        return sr_pbrt_fail(p->d, where, p->error, SR_ERROR_INPUT,
+                            "Import \"%s\": expected as many AttributeEnd as AttributeBegin in the file", name);
     p->state = state;
     return status;
 }

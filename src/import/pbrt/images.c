@@ -13,8 +13,8 @@ struct sr_pbrt_image {
     struct sr_image *image;
     int channels[4], channel_count; // which of the image's channels are used
     enum sr_colour_space_id space;
-    struct sr_texels kept;          // copy in the scene's arena; width 0: none yet
-    const void *dense;              // the chosen channels, if not all in order; in the scratch arena
+    struct sr_texels kept; // copy in the scene's arena; width 0: none yet
+    const void *dense;     // the chosen channels, if not all in order; in the scratch arena
 };
 
 void sr_pbrt_images_free(struct sr_pbrt_build *b)
@@ -107,7 +107,8 @@ static sr_status keep(struct sr_pbrt_build *b, struct job *j)
         return sr_pbrt_no_memory(b);
     }
     b->hash = sr_pbrt_hash(b->hash, &j->hash, sizeof j->hash);
-    *i = (struct sr_pbrt_image){.path = j->path, .is_linear = j->is_linear, .image = j->image, .space = find_space(j->image)};
+    *i = (struct sr_pbrt_image){
+        .path = j->path, .is_linear = j->is_linear, .image = j->image, .space = find_space(j->image)};
     choose_channels(i);
     return make_dense(b, i);
 }
@@ -156,7 +157,8 @@ static sr_status make_decode(struct sr_pbrt_build *b, float gamma, const float *
     return table ? SR_OK : sr_pbrt_no_memory(b);
 }
 
-sr_status sr_pbrt_texels(struct sr_pbrt_build *b, const char *path, struct sr_location where, float gamma, bool for_good, struct sr_texels *out)
+sr_status sr_pbrt_texels(struct sr_pbrt_build *b, const char *path, struct sr_location where, float gamma,
+                         bool for_good, struct sr_texels *out)
 {
     struct sr_pbrt_image *i = find(b, path, gamma == 1);
     if (!i) {
@@ -167,7 +169,10 @@ sr_status sr_pbrt_texels(struct sr_pbrt_build *b, const char *path, struct sr_lo
             return status;
         i = find(b, path, gamma == 1);
     }
-    *out = (struct sr_texels){.width = i->image->width, .height = i->image->height, .channels = (uint32_t)i->channel_count, .space = i->space};
+    *out = (struct sr_texels){.width = i->image->width,
+                              .height = i->image->height,
+                              .channels = (uint32_t)i->channel_count,
+                              .space = i->space};
     size_t size = (size_t)out->width * out->height * out->channels * (i->image->bytes ? 1 : sizeof(float));
     const void *data = i->dense;
     if (for_good && !i->kept.width) {
@@ -200,6 +205,7 @@ sr_status sr_pbrt_encoding(struct sr_pbrt_build *b, const struct sr_pbrt_entity 
         if (end && *end == 0 && value > 0.01 && value < 100)
             return SR_OK;
     }
-    return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "%s \"%s\": encoding \"%s\": expected sRGB, linear or \"gamma x\"", e->directive,
-                        e->model, word);
+    return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT,
+                        "%s \"%s\": encoding \"%s\": expected sRGB, linear or \"gamma x\"", e->directive, e->model,
+                        word);
 }

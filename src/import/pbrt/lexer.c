@@ -11,7 +11,8 @@ struct sr_pbrt_lexer sr_pbrt_lexer_start(const char *file, const char *text, siz
     const char *start = text;
     if (size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) // the mark that some editors write first
         start += 3;
-    return (struct sr_pbrt_lexer){.file = file, .p = start, .end = text + size, .line_start = start, .line = 1, .arena = arena};
+    return (struct sr_pbrt_lexer){
+        .file = file, .p = start, .end = text + size, .line_start = start, .line = 1, .arena = arena};
 }
 
 static struct sr_location location(const struct sr_pbrt_lexer *l, const char *p)
@@ -77,14 +78,15 @@ static sr_status lex_string(struct sr_pbrt_lexer *l, struct sr_pbrt_token *token
     bool has_escape = false;
     for (; *p != '"'; ++p) {
         if (*p == '\n' || p >= l->end)
-            return sr_fail(error, SR_ERROR_INPUT, "%s:%d:%d: this string has no closing \" on its line", l->file, token->where.line,
-                           token->where.column);
+            return sr_fail(error, SR_ERROR_INPUT, "%s:%d:%d: this string has no closing \" on its line", l->file,
+                           token->where.line, token->where.column);
         if (*p == '\\') {
             struct sr_location where = location(l, p);
             has_escape = true;
             ++p;
             if (p >= l->end || !unescape(*p))
-                return sr_fail(error, SR_ERROR_INPUT, "%s:%d:%d: unknown escape in a string: expected \\b \\f \\n \\r \\t \\\\ \\' or \\\"",
+                return sr_fail(error, SR_ERROR_INPUT,
+                               "%s:%d:%d: unknown escape in a string: expected \\b \\f \\n \\r \\t \\\\ \\' or \\\"",
                                l->file, where.line, where.column);
         }
     }
@@ -126,8 +128,8 @@ sr_status sr_pbrt_lexer_next(struct sr_pbrt_lexer *l, struct sr_pbrt_token *toke
         return lex_string(l, token, error);
     case 0:
         if (l->p < l->end)
-            return sr_fail(error, SR_ERROR_INPUT, "%s:%d:%d: a NUL byte in the text: this is not a pbrt file", l->file, token->where.line,
-                           token->where.column);
+            return sr_fail(error, SR_ERROR_INPUT, "%s:%d:%d: a NUL byte in the text: this is not a pbrt file", l->file,
+                           token->where.line, token->where.column);
         token->kind = SR_PBRT_END;
         token->length = 0;
         return SR_OK;

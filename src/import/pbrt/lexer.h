@@ -21,13 +21,13 @@ struct sr_pbrt_token {
 };
 
 struct sr_pbrt_lexer {
-    const char *file;           // name for messages
-    const char *p, *end;        // *end is NUL
+    const char *file;    // name for messages
+    const char *p, *end; // *end is NUL
     const char *line_start;
     const char *number; // where the latest of sr_pbrt_lexer_number began
     int line;
-    struct sr_arena *arena;     // for strings with escapes
-    bool has_next;              // one token has been looked at and not taken
+    struct sr_arena *arena; // for strings with escapes
+    bool has_next;          // one token has been looked at and not taken
     struct sr_pbrt_token next_token;
 };
 

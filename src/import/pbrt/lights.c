@@ -11,7 +11,9 @@ void sr_pbrt_tell_normalisation(struct sr_pbrt_build *b, const struct sr_pbrt_en
         enum sr_pbrt_type type = e->params.items[i].type;
         if (type == SR_PBRT_SPECTRUM || type == SR_PBRT_BLACKBODY) {
             b->has_told_normalisation = true;
-            sr_log(b->log, SR_INFO, "%s:%d: emission given as a spectrum is scaled to luminance 1 before \"scale\" or \"power\", as pbrt does",
+            sr_log(b->log, SR_INFO,
+                   "%s:%d: emission given as a spectrum is scaled to luminance 1 before \"scale\" or \"power\", as "
+                   "pbrt does",
                    e->where.file, e->where.line);
         }
     }
@@ -72,7 +74,8 @@ sr_status sr_pbrt_build_lights(struct sr_pbrt_build *b)
     return status;
 }
 
-sr_status sr_pbrt_emission(struct sr_pbrt_build *b, uint32_t area_light1, float area, const struct sr_light_emission **out)
+sr_status sr_pbrt_emission(struct sr_pbrt_build *b, uint32_t area_light1, float area,
+                           const struct sr_light_emission **out)
 {
     struct sr_pbrt_entity *e = SR_PBRT_AT(b->d->area_lights, struct sr_pbrt_entity, area_light1 - 1);
     const char *const supported[] = {"diffuse"};
@@ -81,7 +84,8 @@ sr_status sr_pbrt_emission(struct sr_pbrt_build *b, uint32_t area_light1, float 
     struct sr_light_emission *emission = sr_arena_alloc(b->arena, sizeof *emission);
     if (!emission)
         return sr_pbrt_no_memory(b);
-    sr_status status = sr_pbrt_bind(b, sr_light_emission_params, e, (struct sr_pbrt_use){SR_PARAM_ALBEDO, false}, emission);
+    sr_status status =
+        sr_pbrt_bind(b, sr_light_emission_params, e, (struct sr_pbrt_use){SR_PARAM_ALBEDO, false}, emission);
     emission->space = e->space;
     if (status == SR_OK)
         status = read_image(b, e, &emission->texels);

@@ -10,8 +10,10 @@ struct common {
     const char *normal_map;
 };
 static const struct sr_param common_params[] = {
-    {SR_PARAM_FLOAT_TEXTURE, "displacement", "m", -INFINITY, INFINITY, NAN, offsetof(struct common, displacement), "bump"},
-    {SR_PARAM_FILE, "normalmap", "1", 0, 0, NAN, offsetof(struct common, normal_map), "directions in red, green and blue"},
+    {SR_PARAM_FLOAT_TEXTURE, "displacement", "m", -INFINITY, INFINITY, NAN, offsetof(struct common, displacement),
+     "bump"},
+    {SR_PARAM_FILE, "normalmap", "1", 0, 0, NAN, offsetof(struct common, normal_map),
+     "directions in red, green and blue"},
     {.name = NULL},
 };
 
@@ -19,7 +21,8 @@ static bool is_interface(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e
 {
     bool is_old = e->model[0] == 0 || strcmp(e->model, "none") == 0;
     if (is_old)
-        sr_pbrt_warn(b->d, e->where, "%s \"%s\" is deprecated: \"interface\" is the name of the material that is none", e->directive, e->model);
+        sr_pbrt_warn(b->d, e->where, "%s \"%s\" is deprecated: \"interface\" is the name of the material that is none",
+                     e->directive, e->model);
     return is_old || strcmp(e->model, "interface") == 0;
 }
 
@@ -45,9 +48,12 @@ static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, s
     if (status == SR_OK)
         status = sr_pbrt_bind(b, common_params, e, (struct sr_pbrt_use){SR_PARAM_ALBEDO, false}, &common);
     if (status == SR_OK && common.normal_map) // directions, so linear
-        status = sr_pbrt_texels(b, common.normal_map, sr_pbrt_find(&e->params, "normalmap")->where, 1, true, &material->normal_map);
+        status = sr_pbrt_texels(b, common.normal_map, sr_pbrt_find(&e->params, "normalmap")->where, 1, true,
+                                &material->normal_map);
     if (status == SR_OK && common.normal_map && material->normal_map.channels < 3)
-        status = sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "%s \"%s\": the normal map is grey: expected red, green and blue", e->directive, e->model);
+        status =
+            sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT,
+                         "%s \"%s\": the normal map is grey: expected red, green and blue", e->directive, e->model);
     if (status != SR_OK)
         return status;
     struct sr_error inner = {0};
@@ -61,10 +67,12 @@ static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, s
     return SR_OK;
 }
 
-static sr_status get(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, struct sr_pbrt_built_material *built, const struct sr_material **out)
+static sr_status get(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, struct sr_pbrt_built_material *built,
+                     const struct sr_material **out)
 {
     if (built->is_being_made)
-        return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "%s \"%s\" is a mix of itself", e->directive, e->name ? e->name : e->model);
+        return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "%s \"%s\" is a mix of itself", e->directive,
+                            e->name ? e->name : e->model);
     if (!built->is_made) {
         built->is_being_made = true;
         sr_status status = make(b, e, &built->material);
@@ -77,7 +85,8 @@ static sr_status get(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, st
     return SR_OK;
 }
 
-sr_status sr_pbrt_material(struct sr_pbrt_build *b, const struct sr_pbrt_material_ref *ref, const struct sr_material **out)
+sr_status sr_pbrt_material(struct sr_pbrt_build *b, const struct sr_pbrt_material_ref *ref,
+                           const struct sr_material **out)
 {
     if (!ref->name)
         return get(b, SR_PBRT_AT(b->d->materials, struct sr_pbrt_entity, ref->index), &b->materials[ref->index], out);
@@ -89,7 +98,8 @@ sr_status sr_pbrt_material(struct sr_pbrt_build *b, const struct sr_pbrt_materia
             return get(b, e, &b->materials[b->d->materials.count + i], out);
         sr_pbrt_suggest(&s, e->name);
     }
-    return sr_pbrt_fail(b->d, ref->where, b->error, SR_ERROR_INPUT, "there is no material named \"%s\"%s", ref->name, sr_pbrt_suggestion_text(&s, buffer));
+    return sr_pbrt_fail(b->d, ref->where, b->error, SR_ERROR_INPUT, "there is no material named \"%s\"%s", ref->name,
+                        sr_pbrt_suggestion_text(&s, buffer));
 }
 
 sr_status sr_pbrt_materials(struct sr_pbrt_build *b, const struct sr_pbrt_param *p, struct sr_slice *out)
@@ -103,7 +113,8 @@ sr_status sr_pbrt_materials(struct sr_pbrt_build *b, const struct sr_pbrt_param 
         if (status != SR_OK)
             return status;
         if (!list[i])
-            return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"string %s\": \"%s\" is an interface, which cannot be mixed", p->name, p->strings[i]);
+            return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT,
+                                "\"string %s\": \"%s\" is an interface, which cannot be mixed", p->name, p->strings[i]);
     }
     *out = (struct sr_slice){list, p->count};
     return SR_OK;

@@ -15,12 +15,23 @@ static const struct type_row {
     enum storage storage;
     uint32_t arity; // values of one item
 } types[] = {
-    {"float", SR_PBRT_FLOAT, FLOATS, 1},         {"integer", SR_PBRT_INTEGER, INTS, 1},     {"point3", SR_PBRT_POINT3, FLOATS, 3},
-    {"string", SR_PBRT_STRING_TYPE, STRINGS, 1}, {"rgb", SR_PBRT_RGB, FLOATS, 3},           {"texture", SR_PBRT_TEXTURE, STRINGS, 1},
-    {"bool", SR_PBRT_BOOL, BOOLS, 1},            {"spectrum", SR_PBRT_SPECTRUM, FLOATS, 2}, {"blackbody", SR_PBRT_BLACKBODY, FLOATS, 1},
-    {"normal", SR_PBRT_NORMAL, FLOATS, 3},       {"normal3", SR_PBRT_NORMAL, FLOATS, 3},    {"point2", SR_PBRT_POINT2, FLOATS, 2},
-    {"vector2", SR_PBRT_VECTOR2, FLOATS, 2},     {"vector3", SR_PBRT_VECTOR3, FLOATS, 3},   {"point", SR_PBRT_POINT3, FLOATS, 3},
-    {"vector", SR_PBRT_VECTOR3, FLOATS, 3},      {NULL, 0, 0, 0},
+    {"float", SR_PBRT_FLOAT, FLOATS, 1},
+    {"integer", SR_PBRT_INTEGER, INTS, 1},
+    {"point3", SR_PBRT_POINT3, FLOATS, 3},
+    {"string", SR_PBRT_STRING_TYPE, STRINGS, 1},
+    {"rgb", SR_PBRT_RGB, FLOATS, 3},
+    {"texture", SR_PBRT_TEXTURE, STRINGS, 1},
+    {"bool", SR_PBRT_BOOL, BOOLS, 1},
+    {"spectrum", SR_PBRT_SPECTRUM, FLOATS, 2},
+    {"blackbody", SR_PBRT_BLACKBODY, FLOATS, 1},
+    {"normal", SR_PBRT_NORMAL, FLOATS, 3},
+    {"normal3", SR_PBRT_NORMAL, FLOATS, 3},
+    {"point2", SR_PBRT_POINT2, FLOATS, 2},
+    {"vector2", SR_PBRT_VECTOR2, FLOATS, 2},
+    {"vector3", SR_PBRT_VECTOR3, FLOATS, 3},
+    {"point", SR_PBRT_POINT3, FLOATS, 3},
+    {"vector", SR_PBRT_VECTOR3, FLOATS, 3},
+    {NULL, 0, 0, 0},
 };
 
 const char *sr_pbrt_type_name(enum sr_pbrt_type type)
@@ -45,8 +56,8 @@ static bool is_space(char c)
 }
 
 /* "type name" into its two words */
-static sr_status split_declaration(struct sr_pbrt_description *d, const struct sr_pbrt_token *token, struct sr_pbrt_param *p,
-                                   const struct type_row **row, struct sr_error *error)
+static sr_status split_declaration(struct sr_pbrt_description *d, const struct sr_pbrt_token *token,
+                                   struct sr_pbrt_param *p, const struct type_row **row, struct sr_error *error)
 {
     const char *a = token->text, *end = token->text + token->length;
     while (a < end && is_space(*a))
@@ -64,7 +75,8 @@ static sr_status split_declaration(struct sr_pbrt_description *d, const struct s
     while (rest < end && is_space(*rest))
         ++rest;
     if (a == b || c == name_end || rest != end)
-        return sr_pbrt_fail(d, token->where, error, SR_ERROR_INPUT, "parameter \"%.*s\": expected \"type name\", such as \"float radius\"",
+        return sr_pbrt_fail(d, token->where, error, SR_ERROR_INPUT,
+                            "parameter \"%.*s\": expected \"type name\", such as \"float radius\"",
                             token->length > 80 ? 80 : (int)token->length, token->text);
     for (const struct type_row *t = types; t->word; ++t)
         if (strlen(t->word) == (size_t)(b - a) && memcmp(t->word, a, (size_t)(b - a)) == 0) {
@@ -82,31 +94,33 @@ static sr_status split_declaration(struct sr_pbrt_description *d, const struct s
     for (const struct type_row *t = types; t->word; ++t)
         sr_pbrt_suggest(&s, t->word);
     return sr_pbrt_fail(d, token->where, error, SR_ERROR_INPUT,
-                        "unknown parameter type \"%s\"; expected bool, float, integer, point2, point3, vector2, vector3, normal, string, "
+                        "unknown parameter type \"%s\"; expected bool, float, integer, point2, point3, vector2, "
+                        "vector3, normal, string, "
                         "texture, rgb, blackbody or spectrum%s",
                         word, sr_pbrt_suggestion_text(&s, buffer));
 }
 
 static sr_status no_memory(const struct sr_pbrt_param *p, struct sr_error *error)
 {
-    return sr_fail(error, SR_ERROR_RESOURCE, "%s:%d:%d: not enough memory for the values of \"%s\"", p->where.file, p->where.line,
-                   p->where.column, p->name);
+    return sr_fail(error, SR_ERROR_RESOURCE, "%s:%d:%d: not enough memory for the values of \"%s\"", p->where.file,
+                   p->where.line, p->where.column, p->name);
 }
 
-static sr_status wrong_value(struct sr_pbrt_description *d, const struct sr_pbrt_param *p, const struct sr_pbrt_token *token, const char *expected,
-                             struct sr_error *error)
+static sr_status wrong_value(struct sr_pbrt_description *d, const struct sr_pbrt_param *p,
+                             const struct sr_pbrt_token *token, const char *expected, struct sr_error *error)
 {
     int length = token->length > 60 ? 60 : (int)token->length;
     if (token->kind == SR_PBRT_END)
-        return sr_pbrt_fail(d, token->where, error, SR_ERROR_INPUT, "the file ends among the values of \"%s %s\": expected %s",
-                            sr_pbrt_type_name(p->type), p->name, expected);
+        return sr_pbrt_fail(d, token->where, error, SR_ERROR_INPUT,
+                            "the file ends among the values of \"%s %s\": expected %s", sr_pbrt_type_name(p->type),
+                            p->name, expected);
     const char *quote = token->kind == SR_PBRT_STRING ? "\"" : "";
-    return sr_pbrt_fail(d, token->where, error, SR_ERROR_INPUT, "%s%.*s%s is no value for \"%s %s\": expected %s", quote, length, token->text,
-                        quote, sr_pbrt_type_name(p->type), p->name, expected);
+    return sr_pbrt_fail(d, token->where, error, SR_ERROR_INPUT, "%s%.*s%s is no value for \"%s %s\": expected %s",
+                        quote, length, token->text, quote, sr_pbrt_type_name(p->type), p->name, expected);
 }
 
-static sr_status push_number(struct sr_pbrt_description *d, const struct sr_pbrt_param *p, enum storage storage, double value,
-                             struct sr_pbrt_scratch *s, struct sr_location where, struct sr_error *error)
+static sr_status push_number(struct sr_pbrt_description *d, const struct sr_pbrt_param *p, enum storage storage,
+                             double value, struct sr_pbrt_scratch *s, struct sr_location where, struct sr_error *error)
 {
     if (storage == FLOATS) {
         float *f = sr_array_push(&s->floats, sizeof *f);
@@ -116,8 +130,8 @@ static sr_status push_number(struct sr_pbrt_description *d, const struct sr_pbrt
         return SR_OK;
     }
     if (!(value >= INT32_MIN && value <= INT32_MAX && value == (double)(int32_t)value))
-        return sr_pbrt_fail(d, where, error, SR_ERROR_INPUT, "%.9g is no value for \"integer %s\": expected a whole number of 32 bits", value,
-                            p->name);
+        return sr_pbrt_fail(d, where, error, SR_ERROR_INPUT,
+                            "%.9g is no value for \"integer %s\": expected a whole number of 32 bits", value, p->name);
     int32_t *i = sr_array_push(&s->ints, sizeof *i);
     if (!i)
         return no_memory(p, error);
@@ -126,8 +140,8 @@ static sr_status push_number(struct sr_pbrt_description *d, const struct sr_pbrt
 }
 
 /* one value that is a token of its own: a string, true or false, or a single number */
-static sr_status read_token_value(struct sr_pbrt_description *d, struct sr_pbrt_param *p, enum storage *storage, const struct sr_pbrt_token *token,
-                                  struct sr_pbrt_scratch *s, struct sr_error *error)
+static sr_status read_token_value(struct sr_pbrt_description *d, struct sr_pbrt_param *p, enum storage *storage,
+                                  const struct sr_pbrt_token *token, struct sr_pbrt_scratch *s, struct sr_error *error)
 {
     double number;
     if (*storage == FLOATS && p->type == SR_PBRT_SPECTRUM && token->kind == SR_PBRT_STRING && s->floats.count == 0)
@@ -154,20 +168,22 @@ static sr_status read_token_value(struct sr_pbrt_description *d, struct sr_pbrt_
     }
     default:
         if (!sr_pbrt_token_number(token, &number))
-            return wrong_value(d, p, token, p->type == SR_PBRT_SPECTRUM ? "a number or the name of a spectrum" : "a number", error);
+            return wrong_value(d, p, token,
+                               p->type == SR_PBRT_SPECTRUM ? "a number or the name of a spectrum" : "a number", error);
         return push_number(d, p, *storage, number, s, token->where, error);
     }
 }
 
 /* numbers between brackets, the quick way; stops at the bracket, or at what is no number */
-static sr_status read_numbers(struct sr_pbrt_description *d, struct sr_pbrt_lexer *lexer, struct sr_pbrt_param *p, enum storage storage,
-                              struct sr_pbrt_scratch *s, bool *is_closed, struct sr_error *error)
+static sr_status read_numbers(struct sr_pbrt_description *d, struct sr_pbrt_lexer *lexer, struct sr_pbrt_param *p,
+                              enum storage storage, struct sr_pbrt_scratch *s, bool *is_closed, struct sr_error *error)
 {
     double value;
     enum sr_pbrt_number_result r;
     if (storage == FLOATS) {
         while ((r = sr_pbrt_lexer_number(lexer, &value)) == SR_PBRT_IS_NUMBER) {
-            if (SR_UNLIKELY(s->floats.count == s->floats.capacity) && !sr_array_reserve(&s->floats, s->floats.count + 1, sizeof(float)))
+            if (SR_UNLIKELY(s->floats.count == s->floats.capacity) &&
+                !sr_array_reserve(&s->floats, s->floats.count + 1, sizeof(float)))
                 return no_memory(p, error);
             ((float *)s->floats.data)[s->floats.count++] = (float)value;
         }
@@ -182,8 +198,8 @@ static sr_status read_numbers(struct sr_pbrt_description *d, struct sr_pbrt_lexe
     return SR_OK;
 }
 
-static sr_status read_values(struct sr_pbrt_description *d, struct sr_pbrt_lexer *lexer, struct sr_pbrt_param *p, enum storage *storage,
-                             struct sr_pbrt_scratch *s, struct sr_error *error)
+static sr_status read_values(struct sr_pbrt_description *d, struct sr_pbrt_lexer *lexer, struct sr_pbrt_param *p,
+                             enum storage *storage, struct sr_pbrt_scratch *s, struct sr_error *error)
 {
     struct sr_pbrt_token token;
     s->floats.count = s->ints.count = s->strings.count = 0;
@@ -204,14 +220,18 @@ static sr_status read_values(struct sr_pbrt_description *d, struct sr_pbrt_lexer
 
 /* From the scratch to where it stays, with 16 readable bytes behind. Long runs of what a scene keeps as it is (indices,
  * texture coordinates) go to its arena; positions and normals are transformed, and so copied, anyway. */
-static sr_status keep_values(struct sr_pbrt_description *d, struct sr_pbrt_param *p, enum storage storage, const struct sr_pbrt_scratch *s,
-                             struct sr_error *error)
+static sr_status keep_values(struct sr_pbrt_description *d, struct sr_pbrt_param *p, enum storage storage,
+                             const struct sr_pbrt_scratch *s, struct sr_error *error)
 {
     const struct sr_array *from = storage == FLOATS ? &s->floats : storage == STRINGS ? &s->strings : &s->ints;
-    size_t size = from->count * (storage == FLOATS ? sizeof(float) : storage == STRINGS ? sizeof(char *) : sizeof(int32_t));
+    size_t size = from->count * (storage == FLOATS    ? sizeof(float)
+                                 : storage == STRINGS ? sizeof(char *)
+                                                      : sizeof(int32_t));
     if (from->count > INT32_MAX)
-        return sr_pbrt_fail(d, p->where, error, SR_ERROR_INPUT, "\"%s\" has %zu values; expected at most 2147483647", p->name, from->count);
-    bool is_kept = size > SR_PBRT_SHORT_RUN_B && (storage == INTS || p->type == SR_PBRT_POINT2 || p->type == SR_PBRT_VECTOR2 || p->type == SR_PBRT_FLOAT);
+        return sr_pbrt_fail(d, p->where, error, SR_ERROR_INPUT, "\"%s\" has %zu values; expected at most 2147483647",
+                            p->name, from->count);
+    bool is_kept = size > SR_PBRT_SHORT_RUN_B && (storage == INTS || p->type == SR_PBRT_POINT2 ||
+                                                  p->type == SR_PBRT_VECTOR2 || p->type == SR_PBRT_FLOAT);
     void *to = is_kept ? sr_arena_alloc(d->data, size + 16) : sr_pbrt_words(d, size + 16);
     if (!to)
         return no_memory(p, error);
@@ -225,26 +245,30 @@ static sr_status keep_values(struct sr_pbrt_description *d, struct sr_pbrt_param
     return SR_OK;
 }
 
-static sr_status check_values(struct sr_pbrt_description *d, const struct sr_pbrt_param *p, uint32_t arity, struct sr_error *error)
+static sr_status check_values(struct sr_pbrt_description *d, const struct sr_pbrt_param *p, uint32_t arity,
+                              struct sr_error *error)
 {
     const char *type = sr_pbrt_type_name(p->type);
     if (p->is_text && p->count != 1)
-        return sr_pbrt_fail(d, p->where, error, SR_ERROR_INPUT, "\"%s %s\" has %u names: expected one", type, p->name, p->count);
+        return sr_pbrt_fail(d, p->where, error, SR_ERROR_INPUT, "\"%s %s\" has %u names: expected one", type, p->name,
+                            p->count);
     if (!p->is_text && p->count % arity != 0)
-        return sr_pbrt_fail(d, p->where, error, SR_ERROR_INPUT, "\"%s %s\" has %u values: expected a multiple of %u", type, p->name, p->count,
-                            arity);
+        return sr_pbrt_fail(d, p->where, error, SR_ERROR_INPUT, "\"%s %s\" has %u values: expected a multiple of %u",
+                            type, p->name, p->count, arity);
     if (p->count == 0 && (p->type == SR_PBRT_RGB || p->type == SR_PBRT_BLACKBODY || p->type == SR_PBRT_SPECTRUM))
         return sr_pbrt_fail(d, p->where, error, SR_ERROR_INPUT, "\"%s %s\" has no values", type, p->name);
     if (p->type == SR_PBRT_RGB)
         for (uint32_t i = 0; i < p->count; ++i)
             if (!(p->floats[i] >= 0))
-                return sr_pbrt_fail(d, p->where, error, SR_ERROR_INPUT, "\"rgb %s\" has the component %g: expected 0 or more", p->name,
+                return sr_pbrt_fail(d, p->where, error, SR_ERROR_INPUT,
+                                    "\"rgb %s\" has the component %g: expected 0 or more", p->name,
                                     (double)p->floats[i]);
     for (uint32_t i = 0; p->type == SR_PBRT_SPECTRUM && !p->is_text && i + 2 < p->count; i += 2)
         if (!(p->floats[i] < p->floats[i + 2]))
             return sr_pbrt_fail(d, p->where, error, SR_ERROR_INPUT,
-                                "\"spectrum %s\" has the wavelength %g after %g: expected pairs of wavelength (nm, increasing) and value", p->name,
-                                (double)p->floats[i + 2], (double)p->floats[i]);
+                                "\"spectrum %s\" has the wavelength %g after %g: expected pairs of wavelength (nm, "
+                                "increasing) and value",
+                                p->name, (double)p->floats[i + 2], (double)p->floats[i]);
     return SR_OK;
 }
 
@@ -266,8 +290,9 @@ static sr_status read_param(struct sr_pbrt_description *d, struct sr_pbrt_lexer 
     return status == SR_OK ? check_values(d, p, row->arity, error) : status;
 }
 
-sr_status sr_pbrt_params_read(struct sr_pbrt_description *d, struct sr_pbrt_lexer *lexer, struct sr_pbrt_scratch *scratch,
-                              enum sr_colour_space_id space, struct sr_pbrt_params defaults, struct sr_pbrt_params *out, struct sr_error *error)
+sr_status sr_pbrt_params_read(struct sr_pbrt_description *d, struct sr_pbrt_lexer *lexer,
+                              struct sr_pbrt_scratch *scratch, enum sr_colour_space_id space,
+                              struct sr_pbrt_params defaults, struct sr_pbrt_params *out, struct sr_error *error)
 {
     scratch->params.count = 0;
     struct sr_pbrt_token token;
@@ -281,7 +306,8 @@ sr_status sr_pbrt_params_read(struct sr_pbrt_description *d, struct sr_pbrt_lexe
         for (size_t i = 0; i < scratch->params.count && !slot; ++i)
             slot = strcmp(earlier[i].name, p.name) == 0 ? &earlier[i] : NULL;
         if (slot)
-            sr_pbrt_warn(d, p.where, "\"%s\" is given twice (first at line %d): the last one counts", p.name, slot->where.line);
+            sr_pbrt_warn(d, p.where, "\"%s\" is given twice (first at line %d): the last one counts", p.name,
+                         slot->where.line);
         else
             slot = sr_array_push(&scratch->params, sizeof *slot);
         if (!slot)

@@ -13,7 +13,8 @@ struct sr_pbrt_scratch {
 void sr_pbrt_scratch_free(struct sr_pbrt_scratch *s);
 
 /* Reads the list up to the next directive. defaults (of Attribute) come behind the entity's own. */
-sr_status sr_pbrt_params_read(struct sr_pbrt_description *d, struct sr_pbrt_lexer *lexer, struct sr_pbrt_scratch *scratch,
-                              enum sr_colour_space_id space, struct sr_pbrt_params defaults, struct sr_pbrt_params *out, struct sr_error *error);
+sr_status sr_pbrt_params_read(struct sr_pbrt_description *d, struct sr_pbrt_lexer *lexer,
+                              struct sr_pbrt_scratch *scratch, enum sr_colour_space_id space,
+                              struct sr_pbrt_params defaults, struct sr_pbrt_params *out, struct sr_error *error);
 
 #endif

@@ -12,7 +12,8 @@ static const size_t max_text_B = (size_t)8 << 30;
 static sr_status wrong_argument(struct sr_pbrt_parser *p, const struct sr_pbrt_token *token, const char *expected)
 {
     if (token->kind == SR_PBRT_END)
-        return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT, "%s: the file ends: expected %s", p->directive, expected);
+        return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT, "%s: the file ends: expected %s",
+                            p->directive, expected);
     const char *quote = token->kind == SR_PBRT_STRING ? "\"" : "";
     return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT, "%s: %s%.*s%s: expected %s", p->directive, quote,
                         token->length > 60 ? 60 : (int)token->length, token->text, quote, expected);
@@ -61,7 +62,8 @@ sr_status sr_pbrt_read_numbers(struct sr_pbrt_parser *p, int count, double *valu
     return status;
 }
 
-sr_status sr_pbrt_read_entity(struct sr_pbrt_parser *p, const char *expected, struct sr_pbrt_params defaults, struct sr_pbrt_entity *entity)
+sr_status sr_pbrt_read_entity(struct sr_pbrt_parser *p, const char *expected, struct sr_pbrt_params defaults,
+                              struct sr_pbrt_entity *entity)
 {
     *entity = (struct sr_pbrt_entity){.directive = p->directive, .where = p->where, .space = p->state.space};
     sr_status status = sr_pbrt_read_string(p, expected, &entity->model);
@@ -82,20 +84,23 @@ static sr_status unknown_directive(struct sr_pbrt_parser *p, const struct sr_pbr
     word[n] = 0;
     double number;
     if (sr_pbrt_token_number(token, &number))
-        return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT, "the number %s stands alone%s%s: expected a directive", word,
-                            p->directive ? " after " : "", p->directive ? p->directive : "");
+        return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT,
+                            "the number %s stands alone%s%s: expected a directive", word, p->directive ? " after " : "",
+                            p->directive ? p->directive : "");
     struct sr_pbrt_suggestion s = {.word = word};
     for (const struct sr_pbrt_directive *d = sr_pbrt_directives; d->word; ++d)
         sr_pbrt_suggest(&s, d->word);
-    return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT, "unknown directive %s%s", word, sr_pbrt_suggestion_text(&s, buffer));
+    return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT, "unknown directive %s%s", word,
+                        sr_pbrt_suggestion_text(&s, buffer));
 }
 
 static sr_status read_directive(struct sr_pbrt_parser *p, const struct sr_pbrt_token *token)
 {
     if (token->kind != SR_PBRT_WORD)
-        return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT, "%s%.*s%s stands alone: expected a directive, such as Shape",
-                            token->kind == SR_PBRT_STRING ? "\"" : "", token->length > 60 ? 60 : (int)token->length, token->text,
-                            token->kind == SR_PBRT_STRING ? "\"" : "");
+        return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT,
+                            "%s%.*s%s stands alone: expected a directive, such as Shape",
+                            token->kind == SR_PBRT_STRING ? "\"" : "", token->length > 60 ? 60 : (int)token->length,
+                            token->text, token->kind == SR_PBRT_STRING ? "\"" : "");
     const struct sr_pbrt_directive *d = sr_pbrt_directives;
     while (d->word && (strlen(d->word) != token->length || memcmp(d->word, token->text, token->length) != 0))
         ++d;
@@ -103,7 +108,8 @@ static sr_status read_directive(struct sr_pbrt_parser *p, const struct sr_pbrt_t
         return unknown_directive(p, token);
     if (!(d->block & (p->d->has_world ? SR_PBRT_IN_WORLD : SR_PBRT_IN_OPTIONS)))
         return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT,
-                            p->d->has_world ? "%s may not stand after WorldBegin: expected before it" : "%s may not stand before WorldBegin: expected after it",
+                            p->d->has_world ? "%s may not stand after WorldBegin: expected before it"
+                                            : "%s may not stand before WorldBegin: expected after it",
                             d->word);
     p->directive = d->word;
     p->where = token->where;
@@ -148,7 +154,8 @@ static sr_status read_file(struct sr_pbrt_parser *p, struct sr_pbrt_file *file)
     struct sr_error error = {0};
     sr_status status = sr_file_read(file->path, max_text_B, &text, &size, &error);
     if (status != SR_OK)
-        return file->from.file ? sr_pbrt_fail(p->d, file->from, p->error, status, "%s", error.text) : sr_fail(p->error, status, "%s", error.text);
+        return file->from.file ? sr_pbrt_fail(p->d, file->from, p->error, status, "%s", error.text)
+                               : sr_fail(p->error, status, "%s", error.text);
     file->is_open = true;
     status = read_text(p, file->path, text, size);
     file->is_open = false;
@@ -169,11 +176,12 @@ sr_status sr_pbrt_include(struct sr_pbrt_parser *p, const char *name)
     for (size_t i = 0; i < p->d->files.count; ++i) {
         const struct sr_pbrt_file *f = *SR_PBRT_AT(p->d->files, struct sr_pbrt_file *, i);
         if (f->is_open && strcmp(f->path, path) == 0)
-            return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "%s \"%s\": this file is being read already, it includes itself",
-                                p->directive, name);
+            return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT,
+                                "%s \"%s\": this file is being read already, it includes itself", p->directive, name);
     }
     if (p->depth >= MAX_DEPTH)
-        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "%s \"%s\": files are nested more than %d deep", p->directive, name, MAX_DEPTH);
+        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "%s \"%s\": files are nested more than %d deep",
+                            p->directive, name, MAX_DEPTH);
     struct sr_pbrt_file *file = add_file(p, path, p->where);
     if (!file)
         return p->error->status;
@@ -190,8 +198,8 @@ static struct sr_pbrt_entity default_entity(const char *directive, const char *m
     return (struct sr_pbrt_entity){.directive = directive, .model = model, .space = SR_SRGB};
 }
 
-static sr_status start(struct sr_pbrt_parser *p, const char *path, struct sr_arena *data, struct sr_log *log, struct sr_pbrt_description *d,
-                       struct sr_error *error)
+static sr_status start(struct sr_pbrt_parser *p, const char *path, struct sr_arena *data, struct sr_log *log,
+                       struct sr_pbrt_description *d, struct sr_error *error)
 {
     *d = (struct sr_pbrt_description){.data = data, .log = log, .transform_end_time = 1, .film_space = SR_SRGB};
     d->camera = default_entity("Camera", "perspective");
@@ -202,7 +210,8 @@ static sr_status start(struct sr_pbrt_parser *p, const char *path, struct sr_are
     d->accelerator = default_entity("Accelerator", "bvh");
     struct sr_transform one = sr_transform_identity();
     *p = (struct sr_pbrt_parser){.d = d, .error = error, .main_path = path};
-    p->state = (struct sr_pbrt_state){.ctm = {one, one}, .transform = UINT32_MAX, .at_start = true, .at_end = true, .space = SR_SRGB};
+    p->state = (struct sr_pbrt_state){
+        .ctm = {one, one}, .transform = UINT32_MAX, .at_start = true, .at_end = true, .space = SR_SRGB};
     struct sr_pbrt_entity *material = sr_array_push(&d->materials, sizeof *material);
     if (!material || sr_pbrt_store_transform(p) == UINT32_MAX)
         return sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", path);
@@ -214,7 +223,9 @@ static sr_status finish(struct sr_pbrt_parser *p, sr_status status, const struct
 {
     if (status == SR_OK && p->stack.count) {
         const struct sr_pbrt_saved_state *open = SR_PBRT_AT(p->stack, struct sr_pbrt_saved_state, p->stack.count - 1);
-        status = sr_pbrt_fail(p->d, open->where, p->error, SR_ERROR_INPUT, "%s", open->is_object ? "ObjectBegin without ObjectEnd" : "AttributeBegin without AttributeEnd");
+        status =
+            sr_pbrt_fail(p->d, open->where, p->error, SR_ERROR_INPUT, "%s",
+                         open->is_object ? "ObjectBegin without ObjectEnd" : "AttributeBegin without AttributeEnd");
     }
     if (status == SR_OK && !p->d->has_world)
         status = sr_fail(p->error, SR_ERROR_INPUT, "%s: the file ends before WorldBegin: expected a scene", file->path);
@@ -224,7 +235,8 @@ static sr_status finish(struct sr_pbrt_parser *p, sr_status status, const struct
     return status;
 }
 
-sr_status sr_pbrt_read(const char *path, struct sr_arena *data, struct sr_log *log, struct sr_pbrt_description *out, struct sr_error *error)
+sr_status sr_pbrt_read(const char *path, struct sr_arena *data, struct sr_log *log, struct sr_pbrt_description *out,
+                       struct sr_error *error)
 {
     struct sr_pbrt_parser p;
     sr_status status = start(&p, path, data, log, out, error);

@@ -18,7 +18,7 @@ enum sr_pbrt_attribute {
 
 struct sr_pbrt_state {
     struct sr_pbrt_transform ctm;
-    uint32_t transform; // its index in the description; UINT32_MAX: not stored yet
+    uint32_t transform;    // its index in the description; UINT32_MAX: not stored yet
     bool at_start, at_end; // which of the two transforms are being changed
     bool reverse_orientation;
     struct sr_pbrt_material_ref material;
@@ -68,7 +68,8 @@ extern const struct sr_pbrt_directive sr_pbrt_directives[];
 /* The arguments of a directive. */
 sr_status sr_pbrt_read_string(struct sr_pbrt_parser *parser, const char *expected, const char **text);
 sr_status sr_pbrt_read_numbers(struct sr_pbrt_parser *parser, int count, double *values);
-sr_status sr_pbrt_read_entity(struct sr_pbrt_parser *parser, const char *expected, struct sr_pbrt_params defaults, struct sr_pbrt_entity *entity);
+sr_status sr_pbrt_read_entity(struct sr_pbrt_parser *parser, const char *expected, struct sr_pbrt_params defaults,
+                              struct sr_pbrt_entity *entity);
 
 /* Reads another file in the place where it is named. */
 sr_status sr_pbrt_include(struct sr_pbrt_parser *parser, const char *name);

@@ -25,8 +25,10 @@ static const struct sr_param film_params[] = {
     {SR_PARAM_INTS, "pixelbounds", "pixel", 0, 1 << 20, NAN, MEMBER(pixel_bounds), "x0 x1 y0 y1"},
     {SR_PARAM_FLOAT, "diagonal", "mm", 0, INFINITY, 35, MEMBER(diagonal), "read; only a realistic camera would use it"},
     {SR_PARAM_FLOAT, "iso", "1", 0, INFINITY, 100, MEMBER(iso), "the picture times iso/100"},
-    {SR_PARAM_FLOAT, "whitebalance", "K", 0, INFINITY, 0, MEMBER(white_balance), "correlated colour temperature; 0: none"},
-    {SR_PARAM_FLOAT, "maxcomponentvalue", "1", 0, INFINITY, INFINITY, MEMBER(max_component), "larger components are scaled down"},
+    {SR_PARAM_FLOAT, "whitebalance", "K", 0, INFINITY, 0, MEMBER(white_balance),
+     "correlated colour temperature; 0: none"},
+    {SR_PARAM_FLOAT, "maxcomponentvalue", "1", 0, INFINITY, INFINITY, MEMBER(max_component),
+     "larger components are scaled down"},
     {SR_PARAM_BOOL, "savefp16", "1", 0, 1, 1, MEMBER(savefp16), "read; files are written with 32 bits"},
     {SR_PARAM_STRING, "sensor", "1", 0, 0, 0, MEMBER(sensor), "cie1931"},
     {SR_PARAM_STRING, "filename", "1", 0, 0, NAN, MEMBER(filename), NULL},
@@ -42,9 +44,12 @@ static sr_status set_region(struct sr_pbrt_build *b, const struct film *f, struc
 {
     const struct sr_import_options *o = b->options;
     const float *crop = o->has_crop ? o->crop_window : f->crop_window.count == 4 ? f->crop_window.data : NULL;
-    const int32_t *bounds = o->has_pixel_bounds ? o->pixel_bounds : f->pixel_bounds.count == 4 ? f->pixel_bounds.data : NULL;
+    const int32_t *bounds = o->has_pixel_bounds          ? o->pixel_bounds
+                            : f->pixel_bounds.count == 4 ? f->pixel_bounds.data
+                                                         : NULL;
     if ((f->crop_window.count && f->crop_window.count != 4) || (f->pixel_bounds.count && f->pixel_bounds.count != 4))
-        return sr_pbrt_fail(b->d, b->d->film.where, b->error, SR_ERROR_INPUT, "Film: cropwindow and pixelbounds: expected four numbers, x0 x1 y0 y1");
+        return sr_pbrt_fail(b->d, b->d->film.where, b->error, SR_ERROR_INPUT,
+                            "Film: cropwindow and pixelbounds: expected four numbers, x0 x1 y0 y1");
     if (o->has_crop && !o->has_pixel_bounds)
         bounds = NULL;
     int32_t w = s->width, h = s->height;
@@ -64,8 +69,9 @@ static sr_status set_region(struct sr_pbrt_build *b, const struct film *f, struc
         s->y1 = clamp_int(ceilf((float)h * sr_max(crop[2], crop[3])), 0, h);
     }
     if (s->x0 >= s->x1 || s->y0 >= s->y1)
-        return sr_pbrt_fail(b->d, b->d->film.where, b->error, SR_ERROR_INPUT, "Film: no pixel is inside of the part to render, x %d to %d, y %d to %d",
-                            (int)s->x0, (int)s->x1, (int)s->y0, (int)s->y1);
+        return sr_pbrt_fail(b->d, b->d->film.where, b->error, SR_ERROR_INPUT,
+                            "Film: no pixel is inside of the part to render, x %d to %d, y %d to %d", (int)s->x0,
+                            (int)s->x1, (int)s->y0, (int)s->y1);
     return SR_OK;
 }
 
@@ -90,9 +96,11 @@ static sr_status build_film(struct sr_pbrt_build *b)
     if (status != SR_OK)
         return status;
     if (strcmp(f.sensor, sensors[0]) != 0)
-        return sr_pbrt_fail(b->d, sr_pbrt_find(&e->params, "sensor")->where, b->error, SR_ERROR_INPUT, "sensor \"%s\" is not supported yet; supported: %s", f.sensor, sensors[0]);
+        return sr_pbrt_fail(b->d, sr_pbrt_find(&e->params, "sensor")->where, b->error, SR_ERROR_INPUT,
+                            "sensor \"%s\" is not supported yet; supported: %s", f.sensor, sensors[0]);
     const struct sr_import_options *o = b->options;
-    int32_t w = o->width ? clamp_int(o->width, 1, 1 << 20) : f.width, h = o->height ? clamp_int(o->height, 1, 1 << 20) : f.height;
+    int32_t w = o->width ? clamp_int(o->width, 1, 1 << 20) : f.width,
+            h = o->height ? clamp_int(o->height, 1, 1 << 20) : f.height;
     if (o->quick) {
         w = w > 4 ? w / 4 : 1;
         h = h > 4 ? h / 4 : 1;
@@ -169,7 +177,8 @@ static sr_status build_sensor(struct sr_pbrt_build *b)
     const struct sr_sensor_common *common = self;
     b->result->film.exposure_time = common->shutter_close - common->shutter_open;
     if (!(b->result->film.exposure_time > 0)) {
-        sr_pbrt_warn(b->d, e->where, "the shutter closes when it opens and the picture would be black: taken as open for 1 s");
+        sr_pbrt_warn(b->d, e->where,
+                     "the shutter closes when it opens and the picture would be black: taken as open for 1 s");
         b->result->film.exposure_time = 1;
     }
     sr_pbrt_warn_unused(b, e, m->params, NULL);
@@ -189,13 +198,15 @@ static const struct sr_param sampler_params[] = {
     {SR_PARAM_INT, "ysamples", "1", 1, 1 << 15, 4, offsetof(struct sampler, y_samples), "of stratified"},
     {SR_PARAM_BOOL, "jitter", "1", 0, 1, 1, offsetof(struct sampler, jitter), "of stratified; read"},
     {SR_PARAM_INT, "seed", "1", INT32_MIN, INT32_MAX, 0, offsetof(struct sampler, seed), "of the random numbers"},
-    {SR_PARAM_STRING, "randomization", "1", 0, 0, 0, offsetof(struct sampler, randomization), "read; nets are Owen-scrambled"},
+    {SR_PARAM_STRING, "randomization", "1", 0, 0, 0, offsetof(struct sampler, randomization),
+     "read; nets are Owen-scrambled"},
     {.name = NULL},
 };
 
 static sr_status build_sampler(struct sr_pbrt_build *b)
 {
-    static const char *const names[] = {"zsobol", "paddedsobol", "halton", "sobol", "pmj02bn", "stratified", "independent"};
+    static const char *const names[] = {"zsobol",  "paddedsobol", "halton",     "sobol",
+                                        "pmj02bn", "stratified",  "independent"};
     const struct sr_pbrt_entity *e = &b->d->sampler;
     size_t n = sizeof names / sizeof *names, i = 0;
     while (i < n && strcmp(names[i], e->model) != 0)
@@ -239,7 +250,10 @@ static sr_status build_integrator(struct sr_pbrt_build *b, enum sr_light_choice 
     bool is_other = strcmp(wanted, e.model) != 0;
     if (is_done_by_path(wanted)) {
         if (e.where.file && !is_other)
-            sr_pbrt_warn(b->d, e.where, "Integrator \"%s\" is not supported yet: \"path\" renders this scene instead, with the same expectation", wanted);
+            sr_pbrt_warn(b->d, e.where,
+                         "Integrator \"%s\" is not supported yet: \"path\" renders this scene instead, with the same "
+                         "expectation",
+                         wanted);
         is_other = is_other || strcmp(wanted, "path") != 0;
         wanted = "path";
     }
@@ -258,7 +272,9 @@ static sr_status build_integrator(struct sr_pbrt_build *b, enum sr_light_choice 
     sr_status status = sr_pbrt_bind(b, m->params, &e, plain, self);
     if (status == SR_OK)
         status = sr_pbrt_get_string(b->d, &e.params, "lightsampler", &light_sampler, b->error);
-    *choice = strcmp(light_sampler, "power") == 0 ? SR_LIGHTS_POWER : strcmp(light_sampler, "uniform") == 0 ? SR_LIGHTS_UNIFORM : SR_LIGHTS_BVH;
+    *choice = strcmp(light_sampler, "power") == 0     ? SR_LIGHTS_POWER
+              : strcmp(light_sampler, "uniform") == 0 ? SR_LIGHTS_UNIFORM
+                                                      : SR_LIGHTS_BVH;
     if (status == SR_OK && !is_other)
         sr_pbrt_warn_unused(b, &e, m->params, NULL);
     b->result->integrator = (struct sr_integrator){m, self};
@@ -269,21 +285,24 @@ static sr_status build_integrator(struct sr_pbrt_build *b, enum sr_light_choice 
 
 static sr_status build_options(struct sr_pbrt_build *b)
 {
-    static const char *const harmless[] = {"rendercoordsys", "wavefront", "pixelstats", "msereferenceimage", "msereferenceout", "displacementedgescale"};
+    static const char *const harmless[] = {"rendercoordsys",    "wavefront",       "pixelstats",
+                                           "msereferenceimage", "msereferenceout", "displacementedgescale"};
     b->result->jitter_pixel = b->result->jitter_lambda = true;
     for (size_t i = 0; i < b->d->options.count; ++i) {
         const struct sr_pbrt_option *o = SR_PBRT_AT(b->d->options, struct sr_pbrt_option, i);
         bool is_on = o->value.type == SR_PBRT_BOOL && o->value.count == 1 && o->value.ints[0];
         bool is_bool = strcmp(o->name, "disablepixeljitter") == 0 || strcmp(o->name, "disablewavelengthjitter") == 0;
         if (is_bool && (o->value.type != SR_PBRT_BOOL || o->value.count != 1))
-            return sr_pbrt_fail(b->d, o->value.where, b->error, SR_ERROR_INPUT, "Option \"%s\": expected one bool", o->value.name);
+            return sr_pbrt_fail(b->d, o->value.where, b->error, SR_ERROR_INPUT, "Option \"%s\": expected one bool",
+                                o->value.name);
         if (strcmp(o->name, "disablepixeljitter") == 0)
             b->result->jitter_pixel = !is_on;
         else if (strcmp(o->name, "disablewavelengthjitter") == 0)
             b->result->jitter_lambda = !is_on;
         else if (strcmp(o->name, "seed") == 0) {
             if (o->value.type != SR_PBRT_INTEGER || o->value.count != 1)
-                return sr_pbrt_fail(b->d, o->value.where, b->error, SR_ERROR_INPUT, "Option \"seed\": expected one integer");
+                return sr_pbrt_fail(b->d, o->value.where, b->error, SR_ERROR_INPUT,
+                                    "Option \"seed\": expected one integer");
             if (!sr_pbrt_find(&b->d->sampler.params, "seed")) // the sampler's own word counts more
                 b->result->seed = (uint32_t)o->value.ints[0];
         } else {
@@ -291,7 +310,8 @@ static sr_status build_options(struct sr_pbrt_build *b)
             for (size_t k = 0; k < sizeof harmless / sizeof *harmless; ++k)
                 is_harmless = is_harmless || strcmp(o->name, harmless[k]) == 0;
             if (!is_harmless && (is_on || o->value.type != SR_PBRT_BOOL))
-                sr_pbrt_warn(b->d, o->value.where, "Option \"%s\" is not supported yet and does nothing", o->value.name);
+                sr_pbrt_warn(b->d, o->value.where, "Option \"%s\" is not supported yet and does nothing",
+                             o->value.name);
         }
     }
     return SR_OK;
@@ -301,7 +321,8 @@ sr_status sr_pbrt_refuse_medium(struct sr_pbrt_build *b, const char *medium, str
 {
     if (!medium || !medium[0])
         return SR_OK;
-    return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT, "MediumInterface \"%s\": participating media are not supported yet", medium);
+    return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT,
+                        "MediumInterface \"%s\": participating media are not supported yet", medium);
 }
 
 sr_status sr_pbrt_build_settings(struct sr_pbrt_build *b, enum sr_light_choice *choice)

@@ -14,7 +14,10 @@ static const struct sr_param common_params[] = {
     {.name = NULL},
 };
 static const struct sr_param ply_params[] = {
-    {.kind = SR_PARAM_FILE, .name = "filename"}, {.kind = SR_PARAM_FLOAT_TEXTURE, .name = "displacement"}, {.kind = SR_PARAM_FLOAT, .name = "edgelength"}, {.name = NULL},
+    {.kind = SR_PARAM_FILE, .name = "filename"},
+    {.kind = SR_PARAM_FLOAT_TEXTURE, .name = "displacement"},
+    {.kind = SR_PARAM_FLOAT, .name = "edgelength"},
+    {.name = NULL},
 };
 
 struct loaded {
@@ -79,7 +82,8 @@ static sr_status load_window(struct adder *a, size_t start, size_t size)
         if (sr_pbrt_get_string(b->d, &s->entity.params, "filename", &name, b->error) != SR_OK)
             return b->error->status;
         if (!name)
-            return sr_pbrt_fail(b->d, s->entity.where, b->error, SR_ERROR_INPUT, "Shape \"plymesh\": expected \"string filename\"");
+            return sr_pbrt_fail(b->d, s->entity.where, b->error, SR_ERROR_INPUT,
+                                "Shape \"plymesh\": expected \"string filename\"");
         if (!(a->window[i].path = sr_pbrt_resolve(b, &b->scratch, name, s->entity.where)))
             return sr_pbrt_no_memory(b);
         ++files;
@@ -100,7 +104,8 @@ static float area_of(struct sr_shape shape)
     return (float)sum;
 }
 
-static sr_status prepare(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, const struct sr_shape_model *m, void *self, struct sr_shape *out)
+static sr_status prepare(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, const struct sr_shape_model *m,
+                         void *self, struct sr_shape *out)
 {
     struct sr_shape_placement placement = {sr_pbrt_transform_of(b, s->entity.transform)->start, s->reverse_orientation};
     struct sr_error inner = {0};
@@ -131,7 +136,8 @@ static void reorder_quads(int32_t *indices, uint32_t quads)
     }
 }
 
-static sr_status make_triangles(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, const struct sr_ply_mesh *ply, struct sr_slice uv, struct sr_shape *out)
+static sr_status make_triangles(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, const struct sr_ply_mesh *ply,
+                                struct sr_slice uv, struct sr_shape *out)
 {
     struct sr_shape_mesh *m = sr_arena_alloc(b->arena, sizeof *m);
     if (!m)
@@ -146,7 +152,8 @@ static sr_status make_triangles(struct sr_pbrt_build *b, const struct sr_pbrt_sh
 }
 
 /* Patches, of which those that are flat parallelograms become triangles unless they shine. */
-static sr_status add_patches(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, struct sr_shape_patches *patches, struct sr_shape shapes[], int *count)
+static sr_status add_patches(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, struct sr_shape_patches *patches,
+                             struct sr_shape shapes[], int *count)
 {
     struct sr_shape_mesh *triangles = sr_arena_alloc(b->arena, sizeof *triangles);
     struct sr_shape_patches *rest = sr_arena_alloc(b->arena, sizeof *rest);
@@ -165,19 +172,23 @@ static sr_status add_patches(struct sr_pbrt_build *b, const struct sr_pbrt_shape
     return status;
 }
 
-static sr_status make_quads(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, const struct sr_ply_mesh *ply, struct sr_slice uv, struct sr_shape shapes[], int *count)
+static sr_status make_quads(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, const struct sr_ply_mesh *ply,
+                            struct sr_slice uv, struct sr_shape shapes[], int *count)
 {
-    struct sr_shape_patches m = {.P = {ply->P, ply->vertex_count}, .N = {ply->N, ply->N ? ply->vertex_count : 0}, .uv = uv};
+    struct sr_shape_patches m = {
+        .P = {ply->P, ply->vertex_count}, .N = {ply->N, ply->N ? ply->vertex_count : 0}, .uv = uv};
     sr_status status = copy_run(b, ply->quads, 4 * (size_t)ply->quad_count, sizeof(int32_t), &m.indices);
     if (status == SR_OK)
-        status = copy_run(b, ply->face_indices ? ply->face_indices + ply->triangle_count : NULL, ply->quad_count, sizeof(int32_t), &m.face_indices);
+        status = copy_run(b, ply->face_indices ? ply->face_indices + ply->triangle_count : NULL, ply->quad_count,
+                          sizeof(int32_t), &m.face_indices);
     if (status != SR_OK)
         return status;
     reorder_quads((int32_t *)(uintptr_t)m.indices.data, ply->quad_count);
     return add_patches(b, s, &m, shapes, count);
 }
 
-static sr_status make_ply(struct adder *a, const struct sr_pbrt_shape *s, struct loaded *l, struct sr_shape shapes[], int *count)
+static sr_status make_ply(struct adder *a, const struct sr_pbrt_shape *s, struct loaded *l, struct sr_shape shapes[],
+                          int *count)
 {
     struct sr_pbrt_build *b = a->b;
     const struct sr_pbrt_params *params = &s->entity.params;
@@ -186,14 +197,17 @@ static sr_status make_ply(struct adder *a, const struct sr_pbrt_shape *s, struct
     b->hash = sr_pbrt_hash(b->hash, &l->hash, sizeof l->hash);
     if (sr_pbrt_find(params, "displacement") && !a->has_warned_displacement) {
         a->has_warned_displacement = true;
-        sr_pbrt_warn(b->d, s->entity.where, "Shape \"plymesh\": \"displacement\" is not supported yet, the mesh stays as it is");
+        sr_pbrt_warn(b->d, s->entity.where,
+                     "Shape \"plymesh\": \"displacement\" is not supported yet, the mesh stays as it is");
     }
     sr_pbrt_find(params, "edgelength");
     struct sr_ply_mesh *ply = &l->mesh;
     if (ply->fan_count)
-        sr_pbrt_warn(b->d, s->entity.where, "%s: %u faces have more than four corners: each became a fan of triangles", l->path, ply->fan_count);
+        sr_pbrt_warn(b->d, s->entity.where, "%s: %u faces have more than four corners: each became a fan of triangles",
+                     l->path, ply->fan_count);
     if (ply->dropped_count)
-        sr_pbrt_warn(b->d, s->entity.where, "%s: %u faces have fewer than three corners: left out", l->path, ply->dropped_count);
+        sr_pbrt_warn(b->d, s->entity.where, "%s: %u faces have fewer than three corners: left out", l->path,
+                     ply->dropped_count);
     struct sr_slice uv;
     sr_status status = copy_run(b, ply->uv, ply->vertex_count, sizeof(sr_vec2), &uv);
     if (status == SR_OK && ply->triangle_count)
@@ -214,7 +228,8 @@ static sr_status unsupported_shape(struct sr_pbrt_build *b, const struct sr_pbrt
     return sr_pbrt_unsupported(b, e, names, n);
 }
 
-static sr_status make_shape(struct adder *a, const struct sr_pbrt_shape *s, struct loaded *l, struct sr_shape shapes[], int *count)
+static sr_status make_shape(struct adder *a, const struct sr_pbrt_shape *s, struct loaded *l, struct sr_shape shapes[],
+                            int *count)
 {
     struct sr_pbrt_build *b = a->b;
     if (is_ply(s))
@@ -229,7 +244,8 @@ static sr_status make_shape(struct adder *a, const struct sr_pbrt_shape *s, stru
     return status == SR_OK ? prepare(b, s, m, self, &shapes[(*count)++]) : status;
 }
 
-static sr_status find_emission(struct adder *a, const struct sr_pbrt_shape *s, const struct sr_shape shapes[], int count, const struct sr_light_emission **out)
+static sr_status find_emission(struct adder *a, const struct sr_pbrt_shape *s, const struct sr_shape shapes[],
+                               int count, const struct sr_light_emission **out)
 {
     struct sr_pbrt_build *b = a->b;
     *out = NULL;
@@ -237,7 +253,8 @@ static sr_status find_emission(struct adder *a, const struct sr_pbrt_shape *s, c
         return SR_OK;
     if (s->object1) {
         if (!a->has_warned_object_light)
-            sr_pbrt_warn(b->d, s->entity.where, "a shape of an object cannot shine: its area light is left out, as pbrt does");
+            sr_pbrt_warn(b->d, s->entity.where,
+                         "a shape of an object cannot shine: its area light is left out, as pbrt does");
         a->has_warned_object_light = true;
         return SR_OK;
     }
@@ -300,10 +317,12 @@ static sr_status add_instances(struct adder *a)
         while (k < b->d->objects.count && strcmp(objects[k].name, instance->name) != 0)
             sr_pbrt_suggest(&s, objects[k++].name);
         if (k == b->d->objects.count)
-            return sr_pbrt_fail(b->d, instance->where, b->error, SR_ERROR_INPUT, "ObjectInstance \"%s\": no object has this name%s", instance->name,
+            return sr_pbrt_fail(b->d, instance->where, b->error, SR_ERROR_INPUT,
+                                "ObjectInstance \"%s\": no object has this name%s", instance->name,
                                 sr_pbrt_suggestion_text(&s, buffer));
         if (a->objects[k].index1)
-            sr_scene_add_instance(b->result->scene, a->objects[k], &sr_pbrt_transform_of(b, instance->transform)->start);
+            sr_scene_add_instance(b->result->scene, a->objects[k],
+                                  &sr_pbrt_transform_of(b, instance->transform)->start);
     }
     return SR_OK;
 }

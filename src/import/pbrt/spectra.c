@@ -12,7 +12,8 @@ struct sr_pbrt_spectrum_file {
     struct sr_spd value;
 };
 
-static sr_status from_samples(struct sr_pbrt_build *b, const float *pairs, uint32_t count, const char *what, struct sr_location where, struct sr_spd *out)
+static sr_status from_samples(struct sr_pbrt_build *b, const float *pairs, uint32_t count, const char *what,
+                              struct sr_location where, struct sr_spd *out)
 {
     float *columns = sr_arena_alloc(&b->scratch, 2 * sizeof(float) * (size_t)count);
     if (!columns)
@@ -23,10 +24,12 @@ static sr_status from_samples(struct sr_pbrt_build *b, const float *pairs, uint3
     }
     struct sr_error inner = {0};
     *out = sr_spd_from_samples(b->arena, columns, columns + count, (int)count, &inner);
-    return inner.status == SR_OK ? SR_OK : sr_pbrt_fail(b->d, where, b->error, inner.status, "%s: %s", what, inner.text);
+    return inner.status == SR_OK ? SR_OK
+                                 : sr_pbrt_fail(b->d, where, b->error, inner.status, "%s: %s", what, inner.text);
 }
 
-static sr_status read_pairs(struct sr_pbrt_build *b, const char *path, const char *text, struct sr_location where, struct sr_array *pairs)
+static sr_status read_pairs(struct sr_pbrt_build *b, const char *path, const char *text, struct sr_location where,
+                            struct sr_array *pairs)
 {
     int line = 1;
     for (const char *p = text;;) {
@@ -42,7 +45,8 @@ static sr_status read_pairs(struct sr_pbrt_build *b, const char *path, const cha
             break;
         const char *end = sr_number_read(p, &value);
         if (!end)
-            return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT, "%s:%d: expected wavelengths (nm) and values, all of them numbers", path, line);
+            return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT,
+                                "%s:%d: expected wavelengths (nm) and values, all of them numbers", path, line);
         float *slot = sr_array_push(pairs, sizeof *slot);
         if (!slot)
             return sr_pbrt_no_memory(b);
@@ -50,7 +54,8 @@ static sr_status read_pairs(struct sr_pbrt_build *b, const char *path, const cha
         p = end;
     }
     if (pairs->count < 2 || pairs->count % 2 || pairs->count > 1 << 24)
-        return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT, "%s: has %zu numbers: expected pairs of wavelength (nm) and value", path, pairs->count);
+        return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT,
+                            "%s: has %zu numbers: expected pairs of wavelength (nm) and value", path, pairs->count);
     return SR_OK;
 }
 
@@ -96,19 +101,23 @@ static sr_status by_name(struct sr_pbrt_build *b, const struct sr_pbrt_param *p,
     char buffer[160];
     for (int i = 0; sr_spd_name(i); ++i)
         sr_pbrt_suggest(&s, sr_spd_name(i));
-    return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"spectrum %s\": \"%s\" is neither the name of a spectrum nor a file%s", p->name, name,
+    return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT,
+                        "\"spectrum %s\": \"%s\" is neither the name of a spectrum nor a file%s", p->name, name,
                         sr_pbrt_suggestion_text(&s, buffer));
 }
 
-static sr_status from_rgb(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p, enum sr_param_kind kind, struct sr_spd *out)
+static sr_status from_rgb(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p,
+                          enum sr_param_kind kind, struct sr_spd *out)
 {
     if (p->count != 3)
-        return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"rgb %s\" of %s \"%s\" has %u values: expected 3", p->name, e->directive, e->model,
+        return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT,
+                            "\"rgb %s\" of %s \"%s\" has %u values: expected 3", p->name, e->directive, e->model,
                             p->count);
     struct sr_rgb rgb = {p->floats[0], p->floats[1], p->floats[2]};
     float largest = sr_max(rgb.r, sr_max(rgb.g, rgb.b));
     if (kind == SR_PARAM_ALBEDO && largest > 1)
-        return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"rgb %s\" of %s \"%s\" has the component %g: expected 0 to 1, for it is a reflectance",
+        return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT,
+                            "\"rgb %s\" of %s \"%s\" has the component %g: expected 0 to 1, for it is a reflectance",
                             p->name, e->directive, e->model, (double)largest);
     *out = kind == SR_PARAM_ALBEDO      ? sr_spd_from_rgb_albedo(p->space, rgb)
            : kind == SR_PARAM_UNBOUNDED ? sr_spd_from_rgb_unbounded(p->space, rgb)
@@ -116,15 +125,16 @@ static sr_status from_rgb(struct sr_pbrt_build *b, const struct sr_pbrt_entity *
     return SR_OK;
 }
 
-sr_status sr_pbrt_spectrum(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p, enum sr_param_kind kind,
-                           struct sr_spd *out)
+sr_status sr_pbrt_spectrum(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p,
+                           enum sr_param_kind kind, struct sr_spd *out)
 {
     switch (p->type) {
     case SR_PBRT_RGB:
         return from_rgb(b, e, p, kind, out);
     case SR_PBRT_BLACKBODY:
         if (p->count != 1 || !(p->floats[0] > 0) || !isfinite(p->floats[0]))
-            return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"blackbody %s\": expected one temperature above 0 K", p->name);
+            return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT,
+                                "\"blackbody %s\": expected one temperature above 0 K", p->name);
         *out = sr_spd_blackbody(p->floats[0]);
         return SR_OK;
     case SR_PBRT_SPECTRUM:
@@ -135,7 +145,8 @@ sr_status sr_pbrt_spectrum(struct sr_pbrt_build *b, const struct sr_pbrt_entity 
             return SR_OK;
         } // fall through
     default:
-        return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"%s %s\" of %s \"%s\" is no spectrum: expected rgb, spectrum or blackbody",
+        return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT,
+                            "\"%s %s\" of %s \"%s\" is no spectrum: expected rgb, spectrum or blackbody",
                             sr_pbrt_type_name(p->type), p->name, e->directive, e->model);
     }
 }

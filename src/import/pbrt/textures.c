@@ -15,29 +15,34 @@ static sr_status unknown_texture(struct sr_pbrt_build *b, const struct sr_pbrt_p
         if (t->is_float == is_float)
             sr_pbrt_suggest(&s, t->entity.name);
         else if (strcmp(t->entity.name, p->strings[0]) == 0)
-            return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"texture %s\": \"%s\" is a %s texture: expected a %s texture", p->name,
-                                p->strings[0], is_float ? "spectrum" : "float", type);
+            return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT,
+                                "\"texture %s\": \"%s\" is a %s texture: expected a %s texture", p->name, p->strings[0],
+                                is_float ? "spectrum" : "float", type);
     }
-    return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"texture %s\": there is no %s texture \"%s\"%s", p->name, type, p->strings[0],
-                        sr_pbrt_suggestion_text(&s, buffer));
+    return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"texture %s\": there is no %s texture \"%s\"%s",
+                        p->name, type, p->strings[0], sr_pbrt_suggestion_text(&s, buffer));
 }
 
 /* An image is read later, together with all others. */
-static sr_status put_off(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_texture_model *m, void *self, enum sr_param_kind use)
+static sr_status put_off(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_texture_model *m,
+                         void *self, enum sr_param_kind use)
 {
     const char *name = NULL, *encoding = NULL;
     float gamma;
     if (sr_pbrt_get_string(b->d, &e->params, "filename", &name, b->error) != SR_OK ||
-        sr_pbrt_get_string(b->d, &e->params, "encoding", &encoding, b->error) != SR_OK || sr_pbrt_encoding(b, e, encoding, &gamma) != SR_OK)
+        sr_pbrt_get_string(b->d, &e->params, "encoding", &encoding, b->error) != SR_OK ||
+        sr_pbrt_encoding(b, e, encoding, &gamma) != SR_OK)
         return b->error->status;
     if (!name)
-        return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "Texture \"%s\": expected \"string filename\"", e->name);
+        return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "Texture \"%s\": expected \"string filename\"",
+                            e->name);
     struct sr_location where = sr_pbrt_find(&e->params, "filename")->where;
     struct sr_pbrt_late_texture *late = sr_array_push(&b->late_textures, sizeof *late);
     const char *path = sr_pbrt_resolve(b, &b->scratch, name, where);
     if (!late || !path)
         return sr_pbrt_no_memory(b);
-    *late = (struct sr_pbrt_late_texture){.entity = e, .model = m, .self = self, .use = {use, e->space}, .path = path, .where = where, .gamma = gamma};
+    *late = (struct sr_pbrt_late_texture){
+        .entity = e, .model = m, .self = self, .use = {use, e->space}, .path = path, .where = where, .gamma = gamma};
     return SR_OK;
 }
 
@@ -68,8 +73,8 @@ sr_status sr_pbrt_finish_textures(struct sr_pbrt_build *b)
     return b->error->status;
 }
 
-static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_texture *t, struct sr_pbrt_bound_texture *bound, enum sr_param_kind use,
-                      struct sr_texture *out)
+static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_texture *t, struct sr_pbrt_bound_texture *bound,
+                      enum sr_param_kind use, struct sr_texture *out)
 {
     const struct sr_pbrt_entity *e = &t->entity;
     const struct sr_texture_model *m = sr_texture_model_find(e->model, t->is_float);
@@ -110,7 +115,8 @@ static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_texture *t, 
     return SR_OK;
 }
 
-sr_status sr_pbrt_named_texture(struct sr_pbrt_build *b, const struct sr_pbrt_param *p, bool is_float, enum sr_param_kind use, struct sr_texture *out)
+sr_status sr_pbrt_named_texture(struct sr_pbrt_build *b, const struct sr_pbrt_param *p, bool is_float,
+                                enum sr_param_kind use, struct sr_texture *out)
 {
     size_t i = 0;
     const struct sr_pbrt_texture *t = NULL;
@@ -128,7 +134,8 @@ sr_status sr_pbrt_named_texture(struct sr_pbrt_build *b, const struct sr_pbrt_pa
         return SR_OK;
     }
     if (bound->is_being_made)
-        return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"texture %s\": texture \"%s\" is made of itself", p->name, p->strings[0]);
+        return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT,
+                            "\"texture %s\": texture \"%s\" is made of itself", p->name, p->strings[0]);
     bound->is_being_made = true;
     sr_status status = make(b, t, bound, use, &bound->made[slot]);
     bound->is_being_made = false;

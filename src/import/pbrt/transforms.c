@@ -9,8 +9,10 @@
 static sr_status set(struct sr_pbrt_parser *p, const struct sr_transform *t, bool is_relative)
 {
     if (!sr_transform_is_valid(t))
-        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "%s: expected a transform that can be inverted", p->directive);
-    struct sr_transform *ctm[2] = {p->state.at_start ? &p->state.ctm.start : NULL, p->state.at_end ? &p->state.ctm.end : NULL};
+        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "%s: expected a transform that can be inverted",
+                            p->directive);
+    struct sr_transform *ctm[2] = {p->state.at_start ? &p->state.ctm.start : NULL,
+                                   p->state.at_end ? &p->state.ctm.end : NULL};
     for (int i = 0; i < 2; ++i)
         if (ctm[i])
             *ctm[i] = is_relative ? sr_transform_multiply(ctm[i], t) : *t;
@@ -53,7 +55,8 @@ sr_status sr_pbrt_read_scale(struct sr_pbrt_parser *p)
     if (sr_pbrt_read_numbers(p, 3, v) != SR_OK)
         return p->error->status;
     if (v[0] == 0 || v[1] == 0 || v[2] == 0)
-        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "Scale %g %g %g: expected three numbers other than 0", v[0], v[1], v[2]);
+        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT,
+                            "Scale %g %g %g: expected three numbers other than 0", v[0], v[1], v[2]);
     struct sr_transform t = sr_transform_scale((sr_vec3){(float)v[0], (float)v[1], (float)v[2]});
     return set(p, &t, true);
 }
@@ -64,7 +67,8 @@ sr_status sr_pbrt_read_rotate(struct sr_pbrt_parser *p)
     if (sr_pbrt_read_numbers(p, 4, v) != SR_OK)
         return p->error->status;
     if (v[1] == 0 && v[2] == 0 && v[3] == 0)
-        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "Rotate about the axis 0 0 0: expected an axis of some length");
+        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT,
+                            "Rotate about the axis 0 0 0: expected an axis of some length");
     struct sr_transform t = sr_transform_rotate((float)v[0], (sr_vec3){(float)v[1], (float)v[2], (float)v[3]});
     return set(p, &t, true);
 }
@@ -76,9 +80,11 @@ sr_status sr_pbrt_read_look_at(struct sr_pbrt_parser *p)
         return p->error->status;
     sr_vec3 eye = {(float)v[0], (float)v[1], (float)v[2]}, look = {(float)v[3], (float)v[4], (float)v[5]};
     sr_vec3 up = {(float)v[6], (float)v[7], (float)v[8]}, d = sr_sub(look, eye);
-    if (!(sr_length2(d) > 0) || !(sr_length2(up) > 0) || !(sr_length(sr_cross(sr_normalize(up), sr_normalize(d))) > 1e-6f))
-        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT,
-                            "LookAt: the eye is where it looks, or up points along the view: expected three different directions");
+    if (!(sr_length2(d) > 0) || !(sr_length2(up) > 0) ||
+        !(sr_length(sr_cross(sr_normalize(up), sr_normalize(d))) > 1e-6f))
+        return sr_pbrt_fail(
+            p->d, p->where, p->error, SR_ERROR_INPUT,
+            "LookAt: the eye is where it looks, or up points along the view: expected three different directions");
     struct sr_transform t = sr_transform_look_at(eye, look, up);
     return set(p, &t, true);
 }
@@ -147,7 +153,8 @@ sr_status sr_pbrt_read_coord_sys_transform(struct sr_pbrt_parser *p)
             return SR_OK;
         }
     }
-    sr_pbrt_warn(p->d, p->where, "CoordSysTransform \"%s\": no coordinate system has this name; the transform stays as it is%s", name,
+    sr_pbrt_warn(p->d, p->where,
+                 "CoordSysTransform \"%s\": no coordinate system has this name; the transform stays as it is%s", name,
                  sr_pbrt_suggestion_text(&s, buffer));
     return SR_OK;
 }
@@ -161,12 +168,14 @@ sr_status sr_pbrt_read_active_transform(struct sr_pbrt_parser *p)
         return p->error->status;
     static const char *const words[] = {"All", "StartTime", "EndTime"};
     for (int i = 0; i < 3; ++i)
-        if (token.kind == SR_PBRT_WORD && token.length == strlen(words[i]) && memcmp(token.text, words[i], token.length) == 0) {
+        if (token.kind == SR_PBRT_WORD && token.length == strlen(words[i]) &&
+            memcmp(token.text, words[i], token.length) == 0) {
             p->state.at_start = i != 2;
             p->state.at_end = i != 1;
             return SR_OK;
         }
-    return sr_pbrt_fail(p->d, token.where, p->error, SR_ERROR_INPUT, "ActiveTransform: expected All, StartTime or EndTime");
+    return sr_pbrt_fail(p->d, token.where, p->error, SR_ERROR_INPUT,
+                        "ActiveTransform: expected All, StartTime or EndTime");
 }
 
 sr_status sr_pbrt_read_transform_times(struct sr_pbrt_parser *p)

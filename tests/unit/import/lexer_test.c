@@ -17,9 +17,10 @@ TEST(tokens_know_kind_line_and_column)
         enum sr_pbrt_token_kind kind;
         const char *text;
         int line, column;
-    } expected[] = {{SR_PBRT_WORD, "Shape", 1, 1},  {SR_PBRT_STRING, "sphere", 1, 7}, {SR_PBRT_STRING, "float radius", 2, 2},
-                    {SR_PBRT_OPEN, "[", 2, 17},     {SR_PBRT_WORD, ".5", 2, 19},      {SR_PBRT_CLOSE, "]", 2, 22},
-                    {SR_PBRT_END, "", 3, 6}};
+    } expected[] = {
+        {SR_PBRT_WORD, "Shape", 1, 1}, {SR_PBRT_STRING, "sphere", 1, 7}, {SR_PBRT_STRING, "float radius", 2, 2},
+        {SR_PBRT_OPEN, "[", 2, 17},    {SR_PBRT_WORD, ".5", 2, 19},      {SR_PBRT_CLOSE, "]", 2, 22},
+        {SR_PBRT_END, "", 3, 6}};
     for (size_t i = 0; i < sizeof expected / sizeof *expected; ++i) {
         struct sr_pbrt_token t;
         struct sr_error e = {0};
@@ -65,10 +66,29 @@ static double number(const char *text)
 
 TEST(numbers_are_those_of_the_c_library)
 {
-    static const char *const texts[] = {"0",       "-0",       "1",        "+7",        ".5",       "5.",       "-.25e1",   "1e10",
-                                        "1E-10",   "3.14159265358979323846", "0.1", "123456789012345678901234567890", "1e22", "1e-22", "1.7976931348623157e308",
-                                        "0.000000000000000000000000000001234567890123456789012345", "4.37114e-8", "33554433", "16777217",
-                                        "3.4028235e38", "1.4e-45", "9007199254740993", "00000000000000000000000001.5"};
+    static const char *const texts[] = {"0",
+                                        "-0",
+                                        "1",
+                                        "+7",
+                                        ".5",
+                                        "5.",
+                                        "-.25e1",
+                                        "1e10",
+                                        "1E-10",
+                                        "3.14159265358979323846",
+                                        "0.1",
+                                        "123456789012345678901234567890",
+                                        "1e22",
+                                        "1e-22",
+                                        "1.7976931348623157e308",
+                                        "0.000000000000000000000000000001234567890123456789012345",
+                                        "4.37114e-8",
+                                        "33554433",
+                                        "16777217",
+                                        "3.4028235e38",
+                                        "1.4e-45",
+                                        "9007199254740993",
+                                        "00000000000000000000000001.5"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; ++i)
         EXPECT_RELATIVE(number(texts[i]), strtod(texts[i], NULL), 4e-16);
     uint64_t state = 1;

@@ -40,10 +40,14 @@ static sr_status decode(const struct bytes *b, struct sr_ply_mesh *mesh, struct 
     return status;
 }
 
-static const char ascii[] = "ply\r\nformat ascii 1.0\r\ncomment made by hand\r\nelement vertex 5\r\nproperty double x\r\nproperty float y\r\nproperty float z\r\n"
-                            "property uchar red\r\nproperty float nx\r\nproperty float ny\r\nproperty float nz\r\nproperty float s\r\nproperty float t\r\n"
-                            "element material 1\r\nproperty list uchar float list\r\nelement face 3\r\nproperty list uchar int vertex_indices\r\nproperty int face_indices\r\nend_header\r\n"
-                            "0 0 0 255 0 0 1 0 0\r\n1 0 0 255 0 0 1 1 0\r\n1 1 0 255 0 0 1 1 1\r\n0 1e0 0 255 0 0 1 0 1\r\n-.5 .5 0 255 0 0 1 0 .5\r\n"
+static const char ascii[] = "ply\r\nformat ascii 1.0\r\ncomment made by hand\r\nelement vertex 5\r\nproperty double "
+                            "x\r\nproperty float y\r\nproperty float z\r\n"
+                            "property uchar red\r\nproperty float nx\r\nproperty float ny\r\nproperty float "
+                            "nz\r\nproperty float s\r\nproperty float t\r\n"
+                            "element material 1\r\nproperty list uchar float list\r\nelement face 3\r\nproperty list "
+                            "uchar int vertex_indices\r\nproperty int face_indices\r\nend_header\r\n"
+                            "0 0 0 255 0 0 1 0 0\r\n1 0 0 255 0 0 1 1 0\r\n1 1 0 255 0 0 1 1 1\r\n0 1e0 0 255 0 0 1 0 "
+                            "1\r\n-.5 .5 0 255 0 0 1 0 .5\r\n"
                             "3 1 2 3\r\n3 0 1 2 7\r\n4 0 1 2 3 8\r\n5 0 1 2 3 4 9";
 
 TEST(ascii_ply_gives_triangles_quads_and_fans)
@@ -61,7 +65,8 @@ TEST(ascii_ply_gives_triangles_quads_and_fans)
     EXPECT_NEAR(m.P[4].x, -0.5, 0);
     EXPECT_NEAR(m.N[2].z, 1, 0);
     EXPECT_NEAR(m.uv[3].y, 1, 0);
-    static const int32_t triangles[] = {0, 1, 2, 0, 1, 2, 0, 2, 3, 0, 3, 4}, faces[] = {7, 9, 9, 9, 8}, quad[] = {0, 1, 2, 3};
+    static const int32_t triangles[] = {0, 1, 2, 0, 1, 2, 0, 2, 3, 0, 3, 4}, faces[] = {7, 9, 9, 9, 8},
+                         quad[] = {0, 1, 2, 3};
     EXPECT(memcmp(m.triangles, triangles, sizeof triangles) == 0);
     EXPECT(memcmp(m.quads, quad, sizeof quad) == 0);
     EXPECT(memcmp(m.face_indices, faces, sizeof faces) == 0);
@@ -75,7 +80,9 @@ static void make_binary(struct bytes *b, bool is_big, int kinds)
 {
     b->size = 0;
     put_text(b, is_big ? "ply\nformat binary_big_endian 1.0\n" : "ply\nformat binary_little_endian 1.0\n");
-    put_text(b, "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float u\nproperty float v\n");
+    put_text(
+        b,
+        "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float u\nproperty float v\n");
     put_text(b, kinds == 3 || kinds == 7 ? "element face 2\n" : "element face 1\n");
     put_text(b, kinds & WIDE ? "property list uint ushort vertex_index\n" : "property list uint8 int vertex_indices\n");
     put_text(b, kinds & EXTRA ? "property short other\nend_header\n" : "end_header\n");
@@ -116,7 +123,8 @@ TEST(binary_ply_of_both_byte_orders_says_the_same)
                 test_fail(__FILE__, __LINE__, "big %d kinds %d: %s", is_big, kinds, e.text);
             EXPECT_EQUAL_INT(m.triangle_count, kinds & TRIANGLES ? 1 : 0);
             EXPECT_EQUAL_INT(m.quad_count, kinds & QUADS ? 1 : 0);
-            EXPECT(m.P[3].x == 1 && m.P[3].y == 1 && m.P[3].z == 0.25f && m.N == NULL && m.uv[3].x == 0.375f && m.uv[0].y == 1);
+            EXPECT(m.P[3].x == 1 && m.P[3].y == 1 && m.P[3].z == 0.25f && m.N == NULL && m.uv[3].x == 0.375f &&
+                   m.uv[0].y == 1);
             for (int32_t k = 0; k < 3 && kinds & TRIANGLES; ++k)
                 EXPECT_EQUAL_INT(m.triangles[k], k);
             for (int32_t k = 0; k < 4 && kinds & QUADS; ++k)
@@ -199,19 +207,28 @@ static void expect_refusal(const char *text, const char *message)
 
 TEST(lies_about_sizes_are_found_before_memory_is_asked_for)
 {
-    expect_refusal("ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\n" VERTEX "element face 1\nproperty list uchar int vertex_indices\nend_header\n1234",
-                   "m.ply: is cut short: its head promises 4000000000 of element \"vertex\", at least 12 bytes each, but 4 bytes are left");
-    expect_refusal("ply\nformat ascii 1.0\nelement vertex 99999999999999\n" VERTEX "element face 1\nproperty list uchar int vertex_indices\nend_header\n1 2 3",
-                   "m.ply: is cut short: its head promises 99999999999999 of element \"vertex\", at least 6 bytes each, but 5 bytes are left");
-    expect_refusal("ply\nformat ascii 1.0\nelement vertex 1\n" VERTEX "element face 1\nproperty list uint int vertex_indices\nend_header\n0 0 0\n4000000000 0 0",
+    expect_refusal("ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\n" VERTEX
+                   "element face 1\nproperty list uchar int vertex_indices\nend_header\n1234",
+                   "m.ply: is cut short: its head promises 4000000000 of element \"vertex\", at least 12 bytes each, "
+                   "but 4 bytes are left");
+    expect_refusal("ply\nformat ascii 1.0\nelement vertex 99999999999999\n" VERTEX
+                   "element face 1\nproperty list uchar int vertex_indices\nend_header\n1 2 3",
+                   "m.ply: is cut short: its head promises 99999999999999 of element \"vertex\", at least 6 bytes "
+                   "each, but 5 bytes are left");
+    expect_refusal("ply\nformat ascii 1.0\nelement vertex 1\n" VERTEX
+                   "element face 1\nproperty list uint int vertex_indices\nend_header\n0 0 0\n4000000000 0 0",
                    "m.ply: face 1 says that it has 4000000000 corners, more than the file holds");
-    expect_refusal("ply\nformat ascii 1.0\nelement vertex 1\n" VERTEX "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n3 0 0 1\n",
+    expect_refusal("ply\nformat ascii 1.0\nelement vertex 1\n" VERTEX
+                   "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n3 0 0 1\n",
                    "m.ply: a face names vertex 1, expected 0 to 0");
-    expect_refusal("ply\nformat ascii 1.0\nelement vertex 1\n" VERTEX "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n3 0 0 -1\n",
+    expect_refusal("ply\nformat ascii 1.0\nelement vertex 1\n" VERTEX
+                   "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n3 0 0 -1\n",
                    "m.ply: a face names vertex -1, expected 0 to 0");
-    expect_refusal("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n0 0\n",
+    expect_refusal("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nelement face "
+                   "0\nproperty list uchar int vertex_indices\nend_header\n0 0\n",
                    "m.ply: its vertices have no x, y and z");
-    expect_refusal("ply\nformat ascii 1.0\nelement vertex 1\n" VERTEX "element face 1\nproperty list float int vertex_indices\nend_header\n",
+    expect_refusal("ply\nformat ascii 1.0\nelement vertex 1\n" VERTEX
+                   "element face 1\nproperty list float int vertex_indices\nend_header\n",
                    "m.ply:8: expected \"property TYPE NAME\" or \"property list INTEGER_TYPE TYPE NAME\"");
     expect_refusal("solid\n", "m.ply: expected a PLY file, which begins with the line \"ply\"");
     expect_refusal("ply\nformat ascii 1.0\n", "m.ply: the head is cut short: expected \"end_header\"");
@@ -223,8 +240,10 @@ TEST(large_binary_ply_is_copied_in_bulk)
 {
     uint32_t side = 742, vertices = side * side, faces = 2 * (side - 1) * (side - 1);
     char head[512];
-    int n = snprintf(head, sizeof head, "ply\nformat binary_little_endian 1.0\nelement vertex %u\n" VERTEX
-                                        "element face %u\nproperty list uchar int vertex_indices\nend_header\n", vertices, faces);
+    int n = snprintf(head, sizeof head,
+                     "ply\nformat binary_little_endian 1.0\nelement vertex %u\n" VERTEX
+                     "element face %u\nproperty list uchar int vertex_indices\nend_header\n",
+                     vertices, faces);
     size_t size = (size_t)n + vertices * 12ull + faces * 13ull;
     char *data = sr_alloc(size + 1), *p = data;
     EXPECT(data != NULL);

@@ -41,7 +41,8 @@ TEST(every_reference_scene_is_read)
         sr_pbrt_description_free(&d);
         sr_arena_free(&data);
     }
-    printf("[   NOTE   ] %d scenes, %zu shapes, %.1f MB of text at %.0f MB/s\n", path_count, shapes, (double)bytes * 1e-6, (double)bytes * 1e-6 / time_s);
+    printf("[   NOTE   ] %d scenes, %zu shapes, %.1f MB of text at %.0f MB/s\n", path_count, shapes,
+           (double)bytes * 1e-6, (double)bytes * 1e-6 / time_s);
     EXPECT(shapes > 10000);
 }
 
