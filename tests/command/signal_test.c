@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: MIT */
+/* Signals: what there is gets written; nothing half-written stays. */
+#define _POSIX_C_SOURCE 200809L
+#include "run.h"
+
+#include <signal.h>
+#include <time.h>
+#include <unistd.h>
+
+
+static void nap(double s)
+{
+    struct timespec t = {.tv_sec = (time_t)s, .tv_nsec = (long)((s - floor(s)) * 1e9)};
+    nanosleep(&t, NULL);
+}
+
+/* Sends the signal as soon as the file is there; kills the render and fails when it does not come. */
+static void send_when_there(pid_t pid, int number, const char *file)
+{
+    double start_s = sr_clock_s();
+    while (count_files(file) == 0) {
+        if (sr_clock_s() - start_s > 60) {
+            kill(pid, SIGKILL);
+            test_fail(__FILE__, __LINE__, "%s is not there after a minute", file);
+        }
+        nap(0.02);
+    }
+    kill(pid, number);
+}
+
+static void expect_partial(const char *name)
+{
+    struct sr_image *image = get_image(name);
+    EXPECT_EQUAL_INT(image->width, 256);
+    EXPECT_EQUAL_TEXT(sr_image_get_attribute(image, "steradian.complete"), "no");
+    sr_image_free(image);
+    EXPECT_EQUAL_INT(count_files(".part-"), 0);
+}
+
+/* Where no unit of work is finished before the progress interval, rendering is slower than the test allows for: the picture is
+ * small, and its samples few enough for a tile to take milliseconds. */
+#define STEADY "render " CORNELL " --resolution 256,256 --spp 2000 --write-partial 0.1 -o "
+
+static void expect_interrupted(int number, int code)
+{
+    remove_file("stopped.exr");
+    pid_t pid = start(STEADY "stopped.exr");
+    send_when_there(pid, number, "stopped.exr");
+    double sent_s = sr_clock_s();
+    const struct said *s = finish(pid);
+    EXPECT_EQUAL_INT(s->code, code);
+    EXPECT(sr_clock_s() - sent_s < 20);
+    EXPECT_SAYS(s->err, "interrupted; what there was has been written");
+    expect_partial("stopped.exr");
+}
+
+TEST(signal_interrupt_writes_what_there_is)
+{
+    expect_interrupted(SIGINT, 130);
+}
+
+TEST(signal_terminate_writes_what_there_is)
+{
+    expect_interrupted(SIGTERM, 143);
+}
+
+TEST(signal_interrupt_is_told_in_the_json)
+{
+    remove_file("told.exr");
+    pid_t pid = start(STEADY "told.exr --json -q");
+    send_when_there(pid, SIGINT, "told.exr");
+    const struct said *s = finish(pid);
+    EXPECT_EQUAL_INT(s->code, 130);
+    json_t *j = json_of(s);
+    EXPECT(json_is_false(json_object_get(j, "complete")));
+    json_decref(j);
+}
+
+TEST(signal_request_writes_a_partial_picture_and_the_render_goes_on)
+{
+    remove_file("asked.exr");
+    remove_file("asked.pfm");
+    // no partial pictures but the one that is asked for
+    pid_t pid = start("render " CORNELL " --resolution 256,256 --spp 2000 -o asked.exr");
+    double start_s = sr_clock_s();
+    while (count_files("asked.exr") == 0 && sr_clock_s() - start_s < 60) {
+        nap(0.1);
+        kill(pid, SIGUSR1);
+    }
+    nap(0.05);
+    expect_partial("asked.exr");
+    EXPECT_EQUAL_INT(kill(pid, 0), 0); // still there
+    nap(0.3);
+    kill(pid, SIGINT);
+    const struct said *s = finish(pid);
+    EXPECT_EQUAL_INT(s->code, 130);
+    EXPECT_SAYS(s->err, "written as it is now, ");
+    expect_partial("asked.exr");
+}
+
+TEST(signal_request_never_kills)
+{
+    pid_t pid = start("render " CORNELL " --resolution 32,32 --spp 16 -o calm.exr -q");
+    nap(0.01);
+    for (int i = 0; i < 20; ++i) {
+        kill(pid, SIGUSR1);
+        nap(0.005);
+    }
+    EXPECT_EQUAL_INT(finish(pid)->code, 0);
+}
