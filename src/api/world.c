@@ -83,10 +83,6 @@ sr_status sr_world_render(const struct sr_world *world, const struct sr_render_s
     job.lambda.lo = s->lambda_min_nm > 0 ? s->lambda_min_nm : job.lambda.lo;
     job.lambda.hi = s->lambda_max_nm > 0 ? s->lambda_max_nm : job.lambda.hi;
     job.with_aov = s->with_auxiliary;
-    if (job.replicates == 1) {
-        sr_fail(&e, SR_ERROR_USAGE, "1 replicate has no spread: 0 or at least 2 replicates were expected");
-        return api_tell(&e, error, error_size);
-    }
     if (!(job.lambda.lo >= 100 && job.lambda.lo < job.lambda.hi && job.lambda.hi <= 20000)) {
         sr_fail(&e, SR_ERROR_USAGE, "wavelengths from %g to %g nm: 100 <= min < max <= 20000 was expected", (double)job.lambda.lo, (double)job.lambda.hi);
         return api_tell(&e, error, error_size);
