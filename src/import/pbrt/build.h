@@ -29,6 +29,9 @@ struct sr_pbrt_built_material {
     bool is_being_made, is_made;
 };
 
+/* Textures of textures and mixes of mixes: rendering goes down as deep. */
+enum { SR_PBRT_MAX_DEPTH = 64 };
+
 struct sr_pbrt_build {
     struct sr_pbrt_description *d;
     const char *main_path;
@@ -40,6 +43,7 @@ struct sr_pbrt_build {
     struct sr_error *error;
     int threads;
     uint64_t hash;
+    int depth; // of textures and materials being made
 
     struct sr_array images;                   // struct sr_pbrt_image
     struct sr_array spectra;                  // struct sr_pbrt_spectrum_file

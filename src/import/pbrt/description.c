@@ -40,6 +40,10 @@ void sr_pbrt_description_free(struct sr_pbrt_description *d)
                                  &d->area_lights,     &d->shapes,   &d->objects,    &d->instances};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; ++i)
         sr_array_free(arrays[i]);
+    struct sr_pbrt_names *names[] = {&d->object_names, &d->material_names, &d->medium_names, &d->float_textures,
+                                     &d->spectrum_textures};
+    for (size_t i = 0; i < sizeof names / sizeof *names; ++i)
+        sr_pbrt_names_free(names[i]);
     sr_arena_free(&d->words);
     *d = (struct sr_pbrt_description){0};
 }

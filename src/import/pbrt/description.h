@@ -116,6 +116,15 @@ struct sr_pbrt_option {
     struct sr_pbrt_param value;
 };
 
+/* Names and the places in a list that they stand for, from 1. Zeroed = empty. */
+struct sr_pbrt_names {
+    struct sr_pbrt_name_slot {
+        const char *name; // NULL: free
+        uint32_t index1;
+    } * slots;
+    uint32_t slot_count, count;
+};
+
 struct sr_pbrt_description {
     struct sr_arena *data;
     struct sr_arena words;
@@ -143,6 +152,8 @@ struct sr_pbrt_description {
     struct sr_array shapes;          // struct sr_pbrt_shape
     struct sr_array objects;         // struct sr_pbrt_object
     struct sr_array instances;       // struct sr_pbrt_instance
+
+    struct sr_pbrt_names object_names, material_names, medium_names, float_textures, spectrum_textures;
 
     size_t text_B; // that has been read
     uint64_t hash; // of it
@@ -182,6 +193,11 @@ struct sr_pbrt_suggestion {
 void sr_pbrt_suggest(struct sr_pbrt_suggestion *s, const char *candidate);
 /* `: did you mean "best"?`, or nothing where nothing is near. */
 const char *sr_pbrt_suggestion_text(const struct sr_pbrt_suggestion *s, char buffer[160]);
+
+bool sr_pbrt_names_add(struct sr_pbrt_names *n, const char *name, uint32_t index1); // false: no memory
+uint32_t sr_pbrt_names_find(const struct sr_pbrt_names *n, const char *name);       // 0: none
+void sr_pbrt_names_suggest(const struct sr_pbrt_names *n, struct sr_pbrt_suggestion *s);
+void sr_pbrt_names_free(struct sr_pbrt_names *n);
 
 /* The entity's parameter of that name, whatever its type; marks it used. NULL: not given. */
 struct sr_pbrt_param *sr_pbrt_find(const struct sr_pbrt_params *params, const char *name);

@@ -210,7 +210,8 @@ static sr_status read_named_material(struct sr_pbrt_parser *p)
 }
 
 /* MakeNamedMaterial and MakeNamedMedium: the first string is the name, the kind is "string type" */
-static sr_status read_named(struct sr_pbrt_parser *p, struct sr_array *list, enum sr_pbrt_attribute attribute)
+static sr_status read_named(struct sr_pbrt_parser *p, struct sr_array *list, struct sr_pbrt_names *names,
+                            enum sr_pbrt_attribute attribute)
 {
     struct sr_pbrt_entity e;
     sr_status status = sr_pbrt_read_entity(p, "a name", p->state.attributes[attribute], &e);
@@ -218,30 +219,33 @@ static sr_status read_named(struct sr_pbrt_parser *p, struct sr_array *list, enu
         return status;
     e.name = e.model;
     e.model = NULL;
-    for (size_t i = 0; i < list->count; ++i) {
-        const struct sr_pbrt_entity *other = SR_PBRT_AT(*list, struct sr_pbrt_entity, i);
-        if (strcmp(other->name, e.name) == 0)
-            return sr_pbrt_fail(p->d, e.where, p->error, SR_ERROR_INPUT, "%s \"%s\": the name is taken, by %s:%d",
-                                e.directive, e.name, other->where.file, other->where.line);
+    uint32_t taken = sr_pbrt_names_find(names, e.name);
+    if (taken) {
+        struct sr_location other = SR_PBRT_AT(*list, struct sr_pbrt_entity, taken - 1)->where;
+        return sr_pbrt_fail(p->d, e.where, p->error, SR_ERROR_INPUT, "%s \"%s\": the name is taken, by %s:%d",
+                            e.directive, e.name, other.file, other.line);
     }
     status = sr_pbrt_get_string(p->d, &e.params, "type", &e.model, p->error);
     if (status == SR_OK && !e.model)
         return sr_pbrt_fail(p->d, e.where, p->error, SR_ERROR_INPUT, "%s \"%s\": expected a parameter \"string type\"",
                             e.directive, e.name);
     struct sr_pbrt_entity *slot = status == SR_OK ? sr_array_push(list, sizeof *slot) : NULL;
-    if (slot)
-        *slot = e;
-    return status != SR_OK ? status : slot ? SR_OK : no_memory(p);
+    if (status != SR_OK)
+        return status;
+    if (!slot || !sr_pbrt_names_add(names, e.name, (uint32_t)list->count))
+        return no_memory(p);
+    *slot = e;
+    return SR_OK;
 }
 
 static sr_status read_make_named_material(struct sr_pbrt_parser *p)
 {
-    return read_named(p, &p->d->named_materials, SR_PBRT_OF_MATERIAL);
+    return read_named(p, &p->d->named_materials, &p->d->material_names, SR_PBRT_OF_MATERIAL);
 }
 
 static sr_status read_make_named_medium(struct sr_pbrt_parser *p)
 {
-    return read_named(p, &p->d->media, SR_PBRT_OF_MEDIUM);
+    return read_named(p, &p->d->media, &p->d->medium_names, SR_PBRT_OF_MEDIUM);
 }
 
 /* one name: both sides */
@@ -269,14 +273,15 @@ static sr_status read_texture(struct sr_pbrt_parser *p)
     if (!is_float && strcmp(type, "spectrum") != 0)
         return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT,
                             "Texture \"%s\" \"%s\": expected \"float\" or \"spectrum\"", name, type);
-    for (size_t i = 0; i < p->d->textures.count; ++i) {
-        const struct sr_pbrt_texture *other = SR_PBRT_AT(p->d->textures, struct sr_pbrt_texture, i);
-        if (other->is_float == is_float && strcmp(other->entity.name, name) == 0)
-            return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "Texture \"%s\": the name is taken, by %s:%d",
-                                name, other->entity.where.file, other->entity.where.line);
+    struct sr_pbrt_names *names = is_float ? &p->d->float_textures : &p->d->spectrum_textures;
+    uint32_t taken = sr_pbrt_names_find(names, name);
+    if (taken) {
+        struct sr_location other = SR_PBRT_AT(p->d->textures, struct sr_pbrt_texture, taken - 1)->entity.where;
+        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "Texture \"%s\": the name is taken, by %s:%d",
+                            name, other.file, other.line);
     }
     struct sr_pbrt_texture *texture = sr_array_push(&p->d->textures, sizeof *texture);
-    if (!texture)
+    if (!texture || !sr_pbrt_names_add(names, name, (uint32_t)p->d->textures.count))
         return no_memory(p);
     texture->is_float = is_float;
     status = sr_pbrt_read_entity(p, "the name of a kind of texture", p->state.attributes[SR_PBRT_OF_TEXTURE],
@@ -342,15 +347,15 @@ static sr_status read_object_begin(struct sr_pbrt_parser *p)
     if (status == SR_OK && p->object1)
         return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT,
                             "ObjectBegin \"%s\" inside of another object: expected ObjectEnd before it", name);
-    for (size_t i = 0; i < p->d->objects.count && status == SR_OK; ++i)
-        if (strcmp(SR_PBRT_AT(p->d->objects, struct sr_pbrt_object, i)->name, name) == 0)
-            return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "ObjectBegin \"%s\": the name is taken",
-                                name);
+    if (status == SR_OK && sr_pbrt_names_find(&p->d->object_names, name))
+        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "ObjectBegin \"%s\": the name is taken", name);
     struct sr_pbrt_object *object = status == SR_OK ? sr_array_push(&p->d->objects, sizeof *object) : NULL;
     if (!object)
         return status != SR_OK ? status : no_memory(p);
     *object = (struct sr_pbrt_object){name, p->where};
     p->object1 = (uint32_t)p->d->objects.count;
+    if (!sr_pbrt_names_add(&p->d->object_names, name, p->object1))
+        return no_memory(p);
     return push(p, true);
 }
 

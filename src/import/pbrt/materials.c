@@ -74,8 +74,13 @@ static sr_status get(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, st
         return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "%s \"%s\" is a mix of itself", e->directive,
                             e->name ? e->name : e->model);
     if (!built->is_made) {
+        if (b->depth >= SR_PBRT_MAX_DEPTH)
+            return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "materials are nested more than %d deep",
+                                SR_PBRT_MAX_DEPTH);
         built->is_being_made = true;
+        ++b->depth;
         sr_status status = make(b, e, &built->material);
+        --b->depth;
         built->is_being_made = false;
         if (status != SR_OK)
             return status;
@@ -90,14 +95,13 @@ sr_status sr_pbrt_material(struct sr_pbrt_build *b, const struct sr_pbrt_materia
 {
     if (!ref->name)
         return get(b, SR_PBRT_AT(b->d->materials, struct sr_pbrt_entity, ref->index), &b->materials[ref->index], out);
+    uint32_t index1 = sr_pbrt_names_find(&b->d->material_names, ref->name);
+    if (index1)
+        return get(b, SR_PBRT_AT(b->d->named_materials, struct sr_pbrt_entity, index1 - 1),
+                   &b->materials[b->d->materials.count + index1 - 1], out);
     struct sr_pbrt_suggestion s = {.word = ref->name};
     char buffer[160];
-    for (size_t i = 0; i < b->d->named_materials.count; ++i) {
-        const struct sr_pbrt_entity *e = SR_PBRT_AT(b->d->named_materials, struct sr_pbrt_entity, i);
-        if (strcmp(e->name, ref->name) == 0)
-            return get(b, e, &b->materials[b->d->materials.count + i], out);
-        sr_pbrt_suggest(&s, e->name);
-    }
+    sr_pbrt_names_suggest(&b->d->material_names, &s);
     return sr_pbrt_fail(b->d, ref->where, b->error, SR_ERROR_INPUT, "there is no material named \"%s\"%s", ref->name,
                         sr_pbrt_suggestion_text(&s, buffer));
 }

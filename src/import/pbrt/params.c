@@ -325,10 +325,17 @@ sr_status sr_pbrt_params_read(struct sr_pbrt_description *d, struct sr_pbrt_lexe
         return sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", lexer->file);
     if (own)
         memcpy(out->items, scratch->params.data, own * sizeof *out->items);
+    out->count = (uint32_t)own;
     for (size_t i = 0; i < defaults.count; ++i) {
-        out->items[own + i] = defaults.items[i];
-        out->items[own + i].is_default = true;
-        out->items[own + i].used = false;
+        bool is_shadowed = false;
+        for (size_t k = 0; k < own && !is_shadowed; ++k)
+            is_shadowed = strcmp(out->items[k].name, defaults.items[i].name) == 0;
+        if (is_shadowed)
+            continue;
+        struct sr_pbrt_param *p = &out->items[out->count++];
+        *p = defaults.items[i];
+        p->is_default = true;
+        p->used = false;
     }
     return SR_OK;
 }

@@ -308,20 +308,19 @@ static sr_status add_shape(struct adder *a, const struct sr_pbrt_shape *s, struc
 static sr_status add_instances(struct adder *a)
 {
     struct sr_pbrt_build *b = a->b;
-    const struct sr_pbrt_object *objects = b->d->objects.data;
     for (size_t i = 0; i < b->d->instances.count; ++i) {
         const struct sr_pbrt_instance *instance = SR_PBRT_AT(b->d->instances, struct sr_pbrt_instance, i);
-        struct sr_pbrt_suggestion s = {.word = instance->name};
-        char buffer[160];
-        size_t k = 0;
-        while (k < b->d->objects.count && strcmp(objects[k].name, instance->name) != 0)
-            sr_pbrt_suggest(&s, objects[k++].name);
-        if (k == b->d->objects.count)
+        uint32_t object1 = sr_pbrt_names_find(&b->d->object_names, instance->name);
+        if (!object1) {
+            struct sr_pbrt_suggestion s = {.word = instance->name};
+            char buffer[160];
+            sr_pbrt_names_suggest(&b->d->object_names, &s);
             return sr_pbrt_fail(b->d, instance->where, b->error, SR_ERROR_INPUT,
                                 "ObjectInstance \"%s\": no object has this name%s", instance->name,
                                 sr_pbrt_suggestion_text(&s, buffer));
-        if (a->objects[k].index1)
-            sr_scene_add_instance(b->result->scene, a->objects[k],
+        }
+        if (a->objects[object1 - 1].index1)
+            sr_scene_add_instance(b->result->scene, a->objects[object1 - 1],
                                   &sr_pbrt_transform_of(b, instance->transform)->start);
     }
     return SR_OK;

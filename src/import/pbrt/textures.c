@@ -10,15 +10,11 @@ static sr_status unknown_texture(struct sr_pbrt_build *b, const struct sr_pbrt_p
     const char *type = is_float ? "float" : "spectrum";
     struct sr_pbrt_suggestion s = {.word = p->strings[0]};
     char buffer[160];
-    for (size_t i = 0; i < b->d->textures.count; ++i) {
-        const struct sr_pbrt_texture *t = SR_PBRT_AT(b->d->textures, struct sr_pbrt_texture, i);
-        if (t->is_float == is_float)
-            sr_pbrt_suggest(&s, t->entity.name);
-        else if (strcmp(t->entity.name, p->strings[0]) == 0)
-            return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT,
-                                "\"texture %s\": \"%s\" is a %s texture: expected a %s texture", p->name, p->strings[0],
-                                is_float ? "spectrum" : "float", type);
-    }
+    if (sr_pbrt_names_find(is_float ? &b->d->spectrum_textures : &b->d->float_textures, p->strings[0]))
+        return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT,
+                            "\"texture %s\": \"%s\" is a %s texture: expected a %s texture", p->name, p->strings[0],
+                            is_float ? "spectrum" : "float", type);
+    sr_pbrt_names_suggest(is_float ? &b->d->float_textures : &b->d->spectrum_textures, &s);
     return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "\"texture %s\": there is no %s texture \"%s\"%s",
                         p->name, type, p->strings[0], sr_pbrt_suggestion_text(&s, buffer));
 }
@@ -118,16 +114,11 @@ static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_texture *t, 
 sr_status sr_pbrt_named_texture(struct sr_pbrt_build *b, const struct sr_pbrt_param *p, bool is_float,
                                 enum sr_param_kind use, struct sr_texture *out)
 {
-    size_t i = 0;
-    const struct sr_pbrt_texture *t = NULL;
-    for (; i < b->d->textures.count; ++i) {
-        t = SR_PBRT_AT(b->d->textures, struct sr_pbrt_texture, i);
-        if (t->is_float == is_float && strcmp(t->entity.name, p->strings[0]) == 0)
-            break;
-    }
-    if (i == b->d->textures.count)
+    uint32_t index1 = sr_pbrt_names_find(is_float ? &b->d->float_textures : &b->d->spectrum_textures, p->strings[0]);
+    if (!index1)
         return unknown_texture(b, p, is_float);
-    struct sr_pbrt_bound_texture *bound = &b->textures[i];
+    const struct sr_pbrt_texture *t = SR_PBRT_AT(b->d->textures, struct sr_pbrt_texture, index1 - 1);
+    struct sr_pbrt_bound_texture *bound = &b->textures[index1 - 1];
     int slot = is_float ? 0 : use == SR_PARAM_ALBEDO ? 1 : use == SR_PARAM_UNBOUNDED ? 2 : 3;
     if (bound->made[slot].model) {
         *out = bound->made[slot];
@@ -136,8 +127,13 @@ sr_status sr_pbrt_named_texture(struct sr_pbrt_build *b, const struct sr_pbrt_pa
     if (bound->is_being_made)
         return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT,
                             "\"texture %s\": texture \"%s\" is made of itself", p->name, p->strings[0]);
+    if (b->depth >= SR_PBRT_MAX_DEPTH)
+        return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT, "textures are nested more than %d deep",
+                            SR_PBRT_MAX_DEPTH);
     bound->is_being_made = true;
+    ++b->depth;
     sr_status status = make(b, t, bound, use, &bound->made[slot]);
+    --b->depth;
     bound->is_being_made = false;
     *out = bound->made[slot];
     return status;

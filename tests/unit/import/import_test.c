@@ -122,6 +122,22 @@ TEST(wrong_parameters_tell_where_and_what_was_expected)
                  "1:18: \"integer pixelsamples\" of Sampler \"zsobol\" is 0: expected 1 to 1.07374e+09");
 }
 
+TEST(textures_may_be_nested_but_not_without_end)
+{
+    static char text[1 << 16];
+    for (int depth = 30; depth <= 120; depth += 90) {
+        size_t n = (size_t)snprintf(text, sizeof text, "WorldBegin Texture \"t0\" \"float\" \"constant\"\n");
+        for (int i = 1; i <= depth; ++i)
+            n += (size_t)snprintf(text + n, sizeof text - n,
+                                  "Texture \"t%d\" \"float\" \"scale\" \"texture tex\" \"t%d\"\n", i, i - 1);
+        snprintf(text + n, sizeof text - n, "Material \"diffuse\" \"texture displacement\" \"t%d\" " BALL, depth);
+        struct sr_import_options options = {.threads = 1};
+        EXPECT_EQUAL_INT(import_with(text, &options), depth == 30 ? SR_OK : SR_ERROR_INPUT);
+        EXPECT(depth == 30 || strstr(error.text, "textures are nested more than 64 deep"));
+        sr_import_result_free(&result);
+    }
+}
+
 TEST(odd_things_are_warned_of)
 {
     expect_warning(

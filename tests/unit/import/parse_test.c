@@ -185,6 +185,22 @@ TEST(transforms_compose_from_the_right)
     forget(&p);
 }
 
+TEST(names_are_found_among_many)
+{
+    struct sr_pbrt_names names = {0};
+    char text[2000][8];
+    for (uint32_t i = 0; i < 2000; ++i) {
+        snprintf(text[i], sizeof text[i], "n%u", i);
+        EXPECT_EQUAL_INT(sr_pbrt_names_find(&names, text[i]), 0);
+        EXPECT(sr_pbrt_names_add(&names, text[i], i + 1));
+    }
+    for (uint32_t i = 0; i < 2000; ++i)
+        EXPECT_EQUAL_INT(sr_pbrt_names_find(&names, text[i]), i + 1);
+    EXPECT_EQUAL_INT(sr_pbrt_names_find(&names, "n2000"), 0);
+    EXPECT_EQUAL_INT(names.count, 2000);
+    sr_pbrt_names_free(&names);
+}
+
 TEST(warnings_tell_what_is_odd)
 {
     struct parsed p;
