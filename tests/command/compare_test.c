@@ -20,7 +20,9 @@ TEST(compare_a_picture_with_itself)
     EXPECT(json_array_size(channels) > 20);
     for (size_t i = 0; i < json_array_size(channels); ++i)
         for (int k = 0; k < 2; ++k)
-            EXPECT_NEAR(json_number_value(json_object_get(json_object_get(json_array_get(channels, i), limits[k]), "value")), 0, 0);
+            EXPECT_NEAR(
+                json_number_value(json_object_get(json_object_get(json_array_get(channels, i), limits[k]), "value")), 0,
+                0);
     json_decref(j);
 }
 
@@ -36,7 +38,8 @@ TEST(compare_two_seeds_differ_by_noise_only)
         EXPECT_EQUAL_TEXT(json_string_value(json_object_get(json_object_get(c, "rmse"), "unit")), "cd/m^2");
         EXPECT_EQUAL_TEXT(json_string_value(json_object_get(json_object_get(c, "rel_mse"), "unit")), "1");
         EXPECT(json_number_value(json_object_get(json_object_get(c, "rmse"), "value")) > 0);
-        double z = json_number_value(json_object_get(noise, "z_of_mean")), p = json_number_value(json_object_get(noise, "p"));
+        double z = json_number_value(json_object_get(noise, "z_of_mean")),
+               p = json_number_value(json_object_get(noise, "p"));
         EXPECT(fabs(z) < 5 && z != 0);
         EXPECT_NEAR(p, sr_normal_p_two_sided(z), 1e-6);
     }
@@ -101,7 +104,8 @@ TEST(compare_counts_what_is_not_finite_as_a_failure)
 TEST(compare_paints_the_difference)
 {
     render_pair();
-    EXPECT_SAYS(run_expecting(0, "compare s1.exr s2.exr -o difference.png --scale 2")->out, "the full colour stands for 2 cd/m^2");
+    EXPECT_SAYS(run_expecting(0, "compare s1.exr s2.exr -o difference.png --scale 2")->out,
+                "the full colour stands for 2 cd/m^2");
     struct sr_image *image = get_image("difference.png");
     EXPECT_EQUAL_INT(image->width, 32);
     sr_image_free(image);
@@ -187,7 +191,8 @@ TEST(info_tells_pictures_and_scenes)
     EXPECT_SAYS(s->out, "cd/m^2");
     EXPECT_SAYS(s->out, "steradian.sceneHash");
     json_t *j = json_of(run_expecting(0, "info s1.exr --json"));
-    EXPECT_EQUAL_TEXT(json_string_value(json_object_get(json_object_get(j, "attributes"), "steradian.samplesPerPixel")), "16");
+    EXPECT_EQUAL_TEXT(json_string_value(json_object_get(json_object_get(j, "attributes"), "steradian.samplesPerPixel")),
+                      "16");
     json_decref(j);
     s = run_expecting(0, "info " CORNELL);
     EXPECT_SAYS(s->out, "perspective");

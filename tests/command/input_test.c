@@ -6,7 +6,9 @@
 #include <unistd.h>
 
 #define FILM "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8 \"string filename\" \"left.exr\"\n"
-#define HEAD FILM "Sampler \"zsobol\" \"integer pixelsamples\" 4\nCamera \"perspective\"\nWorldBegin\nLightSource \"infinite\"\n"
+#define HEAD                                                                                                           \
+    FILM "Sampler \"zsobol\" \"integer pixelsamples\" 4\nCamera \"perspective\"\nWorldBegin\nLightSource "             \
+         "\"infinite\"\n"
 #define QUAD "\"point3 P\" [ -1 -1 3  1 -1 3  1 1 3  -1 1 3 ] \"integer indices\" [ 0 1 2  0 2 3 ]\n"
 
 static void expect_nothing_left(void)
@@ -52,11 +54,13 @@ TEST(input_scene_without_world)
 
 TEST(input_truncated_mesh)
 {
-    put_file("cut.ply", "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-                        "element face 2\nproperty list uchar int vertex_indices\nend_header\n-1 -1 3\n1 -1 3\n");
+    put_file("cut.ply",
+             "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+             "element face 2\nproperty list uchar int vertex_indices\nend_header\n-1 -1 3\n1 -1 3\n");
     expect_refused(HEAD "Shape \"plymesh\" \"string filename\" \"cut.ply\"\n", "cut.ply", "vert");
-    put_file("cut.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 1000000\nproperty float x\nproperty float y\n"
-                        "property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n12345");
+    put_file("cut.ply",
+             "ply\nformat binary_little_endian 1.0\nelement vertex 1000000\nproperty float x\nproperty float y\n"
+             "property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n12345");
     expect_refused(HEAD "Shape \"plymesh\" \"string filename\" \"cut.ply\"\n", "cut.ply", "");
 }
 
@@ -64,7 +68,8 @@ TEST(input_missing_mesh_and_texture)
 {
     expect_refused(HEAD "Shape \"plymesh\" \"string filename\" \"nowhere.ply\"\n", "bad.pbrt:6:", "nowhere.ply");
     expect_refused(HEAD "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"nowhere.png\"\n"
-                        "Material \"diffuse\" \"texture reflectance\" \"t\"\nShape \"trianglemesh\" " QUAD, "bad.pbrt:6:", "nowhere.png");
+                        "Material \"diffuse\" \"texture reflectance\" \"t\"\nShape \"trianglemesh\" " QUAD,
+                   "bad.pbrt:6:", "nowhere.png");
 }
 
 TEST(input_transform_that_is_no_number)
@@ -93,7 +98,8 @@ TEST(input_misspelt_parameter_is_warned_about_with_a_suggestion)
 
 TEST(input_mesh_without_area_renders_and_is_counted)
 {
-    put_file("flat.pbrt", HEAD "Shape \"trianglemesh\" \"point3 P\" [ 0 0 3  1 1 3  2 2 3 ] \"integer indices\" [ 0 1 2 ]\n");
+    put_file("flat.pbrt",
+             HEAD "Shape \"trianglemesh\" \"point3 P\" [ 0 0 3  1 1 3  2 2 3 ] \"integer indices\" [ 0 1 2 ]\n");
     json_t *j = json_of(run_expecting(0, "render flat.pbrt -o flat.pfm --json -q"));
     EXPECT_EQUAL_INT(json_integer_value(json_object_get(json_object_get(j, "counts"), "primitives_without_area")), 1);
     json_decref(j);
@@ -122,9 +128,11 @@ TEST(input_scene_without_shapes_renders_black)
 
 TEST(input_pictures_too_large_are_refused_at_once)
 {
-    EXPECT_SAYS(run_expecting(4, "render " CORNELL " -o left.exr --resolution 1000000000,1000000000")->err, "too large");
+    EXPECT_SAYS(run_expecting(4, "render " CORNELL " -o left.exr --resolution 1000000000,1000000000")->err,
+                "too large");
     EXPECT_SAYS(run_expecting(4, "render " CORNELL " -o left.exr --resolution 1000000,1000000")->err, "memory");
-    expect_refused("Film \"rgb\" \"integer xresolution\" 1000000000 \"integer yresolution\" 1000000000\nCamera \"perspective\"\nWorldBegin\n",
+    expect_refused("Film \"rgb\" \"integer xresolution\" 1000000000 \"integer yresolution\" 1000000000\nCamera "
+                   "\"perspective\"\nWorldBegin\n",
                    "bad.pbrt:1:", "xresolution");
     expect_nothing_left();
 }
@@ -135,10 +143,14 @@ TEST(output_that_cannot_be_written_is_found_before_rendering)
     snprintf(folder, sizeof folder, "%s/folder.exr", test_folder());
     EXPECT(mkdir(folder, 0777) == 0);
     // so many samples that rendering first would not end
-    EXPECT_SAYS(run_expecting(4, "render " CORNELL " --spp 1000000 -o folder.exr")->err, "folder.exr: cannot be written: it is a folder");
-    EXPECT_SAYS(run_expecting(4, "render " CORNELL " --spp 1000000 -o no/such/left.exr")->err, "no/such/left.exr: cannot be written");
-    EXPECT_SAYS(run_expecting(4, "render " CORNELL " --spp 1000000 -o ok.exr -o /proc/left.exr")->err, "/proc/left.exr: cannot be written");
-    put_file("elsewhere.pbrt", "Film \"rgb\" \"string filename\" \"no/such/left.exr\"\nCamera \"perspective\"\nWorldBegin\n");
+    EXPECT_SAYS(run_expecting(4, "render " CORNELL " --spp 1000000 -o folder.exr")->err,
+                "folder.exr: cannot be written: it is a folder");
+    EXPECT_SAYS(run_expecting(4, "render " CORNELL " --spp 1000000 -o no/such/left.exr")->err,
+                "no/such/left.exr: cannot be written");
+    EXPECT_SAYS(run_expecting(4, "render " CORNELL " --spp 1000000 -o ok.exr -o /proc/left.exr")->err,
+                "/proc/left.exr: cannot be written");
+    put_file("elsewhere.pbrt",
+             "Film \"rgb\" \"string filename\" \"no/such/left.exr\"\nCamera \"perspective\"\nWorldBegin\n");
     EXPECT_SAYS(run_expecting(4, "render elsewhere.pbrt --spp 1000000")->err, "no/such/left.exr: cannot be written");
     put_file("ending.pbrt", "Film \"rgb\" \"string filename\" \"left.tga\"\nCamera \"perspective\"\nWorldBegin\n");
     EXPECT_SAYS(run_expecting(3, "render ending.pbrt --spp 1000000")->err, "use -o");

@@ -7,13 +7,15 @@
 TEST(render_writes_every_format_alike)
 {
     run_expecting(0, "render " CORNELL TINY "-o c.exr -o c.png -o c.pfm -o c.hdr --quiet");
-    struct sr_image *exr = get_image("c.exr"), *pfm = get_image("c.pfm"), *hdr = get_image("c.hdr"), *png = get_image("c.png");
+    struct sr_image *exr = get_image("c.exr"), *pfm = get_image("c.pfm"), *hdr = get_image("c.hdr"),
+                    *png = get_image("c.png");
     static const char *const names[] = {"R", "G", "B"};
     for (uint32_t c = 0; c < 3; ++c) {
         EXPECT_EQUAL_INT(sr_image_find_channel(exr, names[c]), c);
         EXPECT_EQUAL_TEXT(exr->channels[c].unit, "cd/m^2");
     }
-    EXPECT(sr_image_find_channel(exr, "SE.R") > 0 && sr_image_find_channel(exr, "depth") > 0 && sr_image_find_channel(exr, "albedo.G") > 0);
+    EXPECT(sr_image_find_channel(exr, "SE.R") > 0 && sr_image_find_channel(exr, "depth") > 0 &&
+           sr_image_find_channel(exr, "albedo.G") > 0);
     EXPECT_EQUAL_TEXT(sr_image_get_attribute(exr, "steradian.samplesPerPixel"), "4");
     EXPECT(sr_image_get_attribute(exr, "steradian.complete") == NULL);
     double sum = 0;
@@ -65,11 +67,13 @@ static double number_at(json_t *j, const char *a, const char *b)
 
 TEST(render_json_has_units_and_uncertainty)
 {
-    json_t *j = json_of(run_expecting(0, "render " CORNELL TINY "-o c.exr -q --json --replicates 2 --irradiance 0.278,0,0.2796,0,1,0"));
+    json_t *j = json_of(
+        run_expecting(0, "render " CORNELL TINY "-o c.exr -q --json --replicates 2 --irradiance 0.278,0,0.2796,0,1,0"));
     EXPECT_EQUAL_TEXT(json_string_value(json_object_get(json_object_get(j, "mean_luminance"), "unit")), "cd/m^2");
     double value = number_at(j, "mean_luminance", "value"), u = number_at(j, "mean_luminance", "standard_uncertainty");
     EXPECT(value > 0 && u > 0);
-    EXPECT_RELATIVE(number_at(j, "mean_luminance", "expanded_uncertainty"), number_at(j, "mean_luminance", "coverage_factor") * u, 1e-6);
+    EXPECT_RELATIVE(number_at(j, "mean_luminance", "expanded_uncertainty"),
+                    number_at(j, "mean_luminance", "coverage_factor") * u, 1e-6);
     EXPECT_NEAR(number_at(j, "settings", "spp"), 4, 0);
     EXPECT_NEAR(number_at(j, "counts", "paths"), 32 * 32 * 4, 0);
     EXPECT(json_is_true(json_object_get(j, "complete")));
@@ -123,7 +127,8 @@ TEST(render_crops)
     for (uint32_t y = 0; y < 16; ++y)
         for (uint32_t x = 0; x < 8; ++x)
             for (uint32_t c = 0; c < 3; ++c)
-                EXPECT_NEAR(part->floats[sr_image_index(part, x, y) + c], whole->floats[sr_image_index(whole, x + 8, y + 4) + c], 0);
+                EXPECT_NEAR(part->floats[sr_image_index(part, x, y) + c],
+                            whole->floats[sr_image_index(whole, x + 8, y + 4) + c], 0);
     sr_image_free(whole);
     sr_image_free(part);
 }

@@ -91,7 +91,8 @@ const struct said *run_expecting(int code, const char *arguments)
 {
     const struct said *s = run(arguments, NULL);
     if (s->code != code)
-        test_fail(__FILE__, __LINE__, "exit code %d, expected %d, of: steradian %s\n%s", s->code, code, arguments, s->err);
+        test_fail(__FILE__, __LINE__, "exit code %d, expected %d, of: steradian %s\n%s", s->code, code, arguments,
+                  s->err);
     return s;
 }
 

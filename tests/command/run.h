@@ -13,7 +13,7 @@
 enum { MAX_SAID = 1 << 16 };
 
 struct said {
-    int code;   // exit code, or 256 + the signal that killed it
+    int code; // exit code, or 256 + the signal that killed it
     char out[MAX_SAID], err[MAX_SAID];
 };
 

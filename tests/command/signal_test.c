@@ -7,7 +7,6 @@
 #include <time.h>
 #include <unistd.h>
 
-
 static void nap(double s)
 {
     struct timespec t = {.tv_sec = (time_t)s, .tv_nsec = (long)((s - floor(s)) * 1e9)};

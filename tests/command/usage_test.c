@@ -27,9 +27,12 @@ TEST(usage_version_and_nothing)
 TEST(usage_typos_get_suggestions)
 {
     static const char *const lines[][2] = {
-        {"rendr", "did you mean \"render\"?"},     {"comapre a b", "did you mean \"compare\"?"},
-        {"render --ssp 3 x", "did you mean --spp"}, {"compare --max-rmes 1 a b", "did you mean --max-rmse"},
-        {"image --exposre 1 a", "did you mean --exposure"}, {"info --jsn x", "did you mean --json"},
+        {"rendr", "did you mean \"render\"?"},
+        {"comapre a b", "did you mean \"compare\"?"},
+        {"render --ssp 3 x", "did you mean --spp"},
+        {"compare --max-rmes 1 a b", "did you mean --max-rmse"},
+        {"image --exposre 1 a", "did you mean --exposure"},
+        {"info --jsn x", "did you mean --json"},
     };
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; ++i)
         EXPECT_SAYS(run_expecting(2, lines[i][0])->err, lines[i][1]);

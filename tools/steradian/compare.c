@@ -29,7 +29,8 @@ static const char help[] =
     "  -q, --quiet            no table; warnings and errors stay\n"
     "\n"
     "With a limit, pixels that are not finite in A or B fail too.\n"
-    "Exit codes: 0 within the limits, 1 a limit is exceeded, 2 usage, 3 bad input (also: sizes differ), 4 cannot write.\n"
+    "Exit codes: 0 within the limits, 1 a limit is exceeded, 2 usage, 3 bad input (also: sizes differ), 4 cannot "
+    "write.\n"
     "\n"
     "Examples:\n"
     "  steradian compare mine.exr reference.exr\n"
@@ -65,21 +66,41 @@ static int parse(int argc, char **argv, struct arguments *a)
     bool ok = true;
     while (ok && (option = command_next_option(argc, argv, ":o:q", long_options, &index)) != -1)
         switch (option) {
-        case 'o': a->output = optarg; break;
-        case 'q': a->quiet = true; break;
-        case OPT_CHANNEL: a->channels = optarg; break;
-        case OPT_ALL: a->all = true; break;
-        case OPT_JSON: a->json = true; break;
-        case OPT_SCALE: ok = command_parse_float(c, "scale", optarg, 1e-30, 1e30, &a->scale); break;
-        case OPT_MAX_RMSE: ok = command_parse_float(c, "max-rmse", optarg, 0, 1e30, &a->max_rmse); break;
-        case OPT_MAX_RELMSE: ok = command_parse_float(c, "max-relmse", optarg, 0, 1e30, &a->max_rel_mse); break;
-        case OPT_MAX_Z: ok = command_parse_float(c, "max-z", optarg, 0, 1e30, &a->max_z); break;
-        default: return command_bad_option(c, long_options, option, argv);
+        case 'o':
+            a->output = optarg;
+            break;
+        case 'q':
+            a->quiet = true;
+            break;
+        case OPT_CHANNEL:
+            a->channels = optarg;
+            break;
+        case OPT_ALL:
+            a->all = true;
+            break;
+        case OPT_JSON:
+            a->json = true;
+            break;
+        case OPT_SCALE:
+            ok = command_parse_float(c, "scale", optarg, 1e-30, 1e30, &a->scale);
+            break;
+        case OPT_MAX_RMSE:
+            ok = command_parse_float(c, "max-rmse", optarg, 0, 1e30, &a->max_rmse);
+            break;
+        case OPT_MAX_RELMSE:
+            ok = command_parse_float(c, "max-relmse", optarg, 0, 1e30, &a->max_rel_mse);
+            break;
+        case OPT_MAX_Z:
+            ok = command_parse_float(c, "max-z", optarg, 0, 1e30, &a->max_z);
+            break;
+        default:
+            return command_bad_option(c, long_options, option, argv);
         }
     if (!ok)
         return SR_ERROR_USAGE;
     if (optind + 2 != argc)
-        return command_usage(c, "two pictures were expected, there %s %d", argc - optind == 1 ? "is" : "are", argc - optind);
+        return command_usage(c, "two pictures were expected, there %s %d", argc - optind == 1 ? "is" : "are",
+                             argc - optind);
     if (a->channels && a->all)
         return command_usage(c, "--channel and --all do not go together");
     if (a->output && !command_is_image_ending(a->output))
@@ -101,8 +122,8 @@ static bool is_colour_channel(const char *name)
 }
 
 /* Leaves in the comparison what the user asked for. */
-static sr_status keep_chosen(const struct arguments *a, const struct sr_image *image, struct sr_image_comparison *comparison,
-                             struct sr_error *error)
+static sr_status keep_chosen(const struct arguments *a, const struct sr_image *image,
+                             struct sr_image_comparison *comparison, struct sr_error *error)
 {
     if (a->all)
         return SR_OK;
@@ -126,7 +147,8 @@ static sr_status keep_chosen(const struct arguments *a, const struct sr_image *i
     if (kept)
         comparison->channel_count = kept;
     else if (a->channels)
-        return sr_fail(error, SR_ERROR_INPUT, "%s: has none of the channels %s that could be compared", a->b, a->channels);
+        return sr_fail(error, SR_ERROR_INPUT, "%s: has none of the channels %s that could be compared", a->b,
+                       a->channels);
     return SR_OK;
 }
 
@@ -141,7 +163,8 @@ static bool exceeds(const struct sr_image_difference *d, const char *what, doubl
 {
     if (!(value > limit)) // no limit: NaN
         return false;
-    fprintf(stderr, "steradian compare: %s: %s = %.6g %s is above the limit of %.6g %s\n", d->name, what, value, unit, limit, unit);
+    fprintf(stderr, "steradian compare: %s: %s = %.6g %s is above the limit of %.6g %s\n", d->name, what, value, unit,
+            limit, unit);
     return true;
 }
 
@@ -156,7 +179,8 @@ static unsigned check_limits(const struct arguments *a, const struct sr_image_co
         exceeded += exceeds(d, "relMSE", d->rel_mse, "[1]", a->max_rel_mse);
         exceeded += exceeds(d, "|z| of the mean", fabs(d->mean_z), "[1]", a->max_z);
         if (has_limit && d->skipped_count) {
-            fprintf(stderr, "steradian compare: %s: %llu pixels are not finite\n", d->name, (unsigned long long)d->skipped_count);
+            fprintf(stderr, "steradian compare: %s: %llu pixels are not finite\n", d->name,
+                    (unsigned long long)d->skipped_count);
             ++exceeded;
         }
     }
@@ -165,15 +189,17 @@ static unsigned check_limits(const struct arguments *a, const struct sr_image_co
 
 /* ---- telling ---- */
 
-static void print_table(const struct arguments *a, const struct sr_image *image, const struct sr_image_comparison *comparison)
+static void print_table(const struct arguments *a, const struct sr_image *image,
+                        const struct sr_image_comparison *comparison)
 {
     printf("A %s, reference B %s: %u x %u pixels\n\n", a->a, a->b, image->width, image->height);
-    printf("%-12s %-9s %12s %12s %9s %12s %11s %12s  at pixel\n", "channel", "unit", "mean A", "mean B", "A/B [1]", "RMSE", "relMSE [1]", "max |A-B|");
+    printf("%-12s %-9s %12s %12s %9s %12s %11s %12s  at pixel\n", "channel", "unit", "mean A", "mean B", "A/B [1]",
+           "RMSE", "relMSE [1]", "max |A-B|");
     bool has_z = false;
     for (uint32_t i = 0; i < comparison->channel_count; ++i) {
         const struct sr_image_difference *d = &comparison->channels[i];
-        printf("%-12s %-9s %12.6g %12.6g %9.6f %12.6g %11.4g %12.6g  %u,%u", d->name, unit_of(d), d->mean_a, d->mean_b, d->mean_ratio, d->rmse,
-               d->rel_mse, d->max_difference, d->max_x, d->max_y);
+        printf("%-12s %-9s %12.6g %12.6g %9.6f %12.6g %11.4g %12.6g  %u,%u", d->name, unit_of(d), d->mean_a, d->mean_b,
+               d->mean_ratio, d->rmse, d->rel_mse, d->max_difference, d->max_x, d->max_y);
         if (d->skipped_count)
             printf("; %llu pixels not finite, left out", (unsigned long long)d->skipped_count);
         putchar('\n');
@@ -183,54 +209,66 @@ static void print_table(const struct arguments *a, const struct sr_image *image,
         printf("\nNeither has standard errors: whether this is noise cannot be told.\n");
         return;
     }
-    printf("\n%-12s %10s %10s %10s %10s %10s %10s %12s\n", "all [1]", "z of mean", "p", "|z| > 2", "|z| > 3", "|z| > 4", "max |z|", "chi2/pixel");
+    printf("\n%-12s %10s %10s %10s %10s %10s %10s %12s\n", "all [1]", "z of mean", "p", "|z| > 2", "|z| > 3", "|z| > 4",
+           "max |z|", "chi2/pixel");
     for (uint32_t i = 0; i < comparison->channel_count; ++i) {
         const struct sr_image_difference *d = &comparison->channels[i];
         if (d->has_z)
-            printf("%-12s %10.3f %10.3g %10.5f %10.5f %10.5f %10.2f %12.4f\n", d->name, d->mean_z, sr_normal_p_two_sided(d->mean_z),
-                   d->share_above_2, d->share_above_3, d->share_above_4, d->max_z, d->chi2_per_pixel);
+            printf("%-12s %10.3f %10.3g %10.5f %10.5f %10.5f %10.2f %12.4f\n", d->name, d->mean_z,
+                   sr_normal_p_two_sided(d->mean_z), d->share_above_2, d->share_above_3, d->share_above_4, d->max_z,
+                   d->chi2_per_pixel);
     }
-    printf("%-12s %10s %10s %10s %10s %10s %10s %12s\n", "pure noise", "0 ± 1", "", "0.04550", "0.00270", "0.00006", "", "1");
+    printf("%-12s %10s %10s %10s %10s %10s %10s %12s\n", "pure noise", "0 ± 1", "", "0.04550", "0.00270", "0.00006", "",
+           "1");
 }
 
 static json_t *channel_json(const struct sr_image_difference *d)
 {
     const char *unit = d->unit[0] ? d->unit : NULL; // null: nobody said
-    json_t *j = json_pack("{s:o, s:o, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:{s:i, s:i, s:s}}", "name", command_json_text(d->name), "unit",
-                          command_json_text(unit), "pixels", (json_int_t)d->count, "pixels_not_finite", (json_int_t)d->skipped_count, "mean_a",
-                          command_json_quantity(d->mean_a, unit), "mean_b", command_json_quantity(d->mean_b, unit), "mean_ratio",
-                          command_json_quantity(d->mean_ratio, "1"), "bias", command_json_quantity(d->bias, unit), "rmse",
-                          command_json_quantity(d->rmse, unit), "rel_mse", command_json_quantity(d->rel_mse, "1"), "max_difference",
-                          command_json_quantity(d->max_difference, unit), "max_at", "x", (int)d->max_x, "y", (int)d->max_y, "unit", "pixel");
+    json_t *j = json_pack(
+        "{s:o, s:o, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:{s:i, s:i, s:s}}", "name",
+        command_json_text(d->name), "unit", command_json_text(unit), "pixels", (json_int_t)d->count,
+        "pixels_not_finite", (json_int_t)d->skipped_count, "mean_a", command_json_quantity(d->mean_a, unit), "mean_b",
+        command_json_quantity(d->mean_b, unit), "mean_ratio", command_json_quantity(d->mean_ratio, "1"), "bias",
+        command_json_quantity(d->bias, unit), "rmse", command_json_quantity(d->rmse, unit), "rel_mse",
+        command_json_quantity(d->rel_mse, "1"), "max_difference", command_json_quantity(d->max_difference, unit),
+        "max_at", "x", (int)d->max_x, "y", (int)d->max_y, "unit", "pixel");
     if (j && d->has_z)
-        json_object_set_new(j, "noise", json_pack("{s:s, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "unit", "1", "pixels", (json_int_t)d->z_count, "z_of_mean",
-                            command_json_number(d->mean_z), "p", command_json_number(sr_normal_p_two_sided(d->mean_z)), "share_above_2",
-                            command_json_number(d->share_above_2), "share_above_3", command_json_number(d->share_above_3), "share_above_4",
-                            command_json_number(d->share_above_4), "max_z", command_json_number(d->max_z), "chi2_per_pixel",
-                            command_json_number(d->chi2_per_pixel)));
+        json_object_set_new(j, "noise",
+                            json_pack("{s:s, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "unit", "1", "pixels",
+                                      (json_int_t)d->z_count, "z_of_mean", command_json_number(d->mean_z), "p",
+                                      command_json_number(sr_normal_p_two_sided(d->mean_z)), "share_above_2",
+                                      command_json_number(d->share_above_2), "share_above_3",
+                                      command_json_number(d->share_above_3), "share_above_4",
+                                      command_json_number(d->share_above_4), "max_z", command_json_number(d->max_z),
+                                      "chi2_per_pixel", command_json_number(d->chi2_per_pixel)));
     return j;
 }
 
-static int print_comparison_json(const struct arguments *a, const struct sr_image *image, const struct sr_image_comparison *comparison,
-                                 double used_scale, unsigned exceeded)
+static int print_comparison_json(const struct arguments *a, const struct sr_image *image,
+                                 const struct sr_image_comparison *comparison, double used_scale, unsigned exceeded)
 {
     json_t *channels = json_array();
     for (uint32_t i = 0; i < comparison->channel_count; ++i)
         json_array_append_new(channels, channel_json(&comparison->channels[i]));
-    json_t *j = json_pack("{s:o, s:o, s:{s:i, s:i, s:s}, s:o, s:{s:o, s:o, s:o}, s:i, s:b}", "a", command_json_text(a->a), "b", command_json_text(a->b),
-                          "size", "width", (int)image->width, "height", (int)image->height, "unit", "pixel", "channels", channels, "limits",
-                          "rmse", command_json_number(a->max_rmse), "rel_mse", command_json_number(a->max_rel_mse), "z_of_mean",
+    json_t *j = json_pack("{s:o, s:o, s:{s:i, s:i, s:s}, s:o, s:{s:o, s:o, s:o}, s:i, s:b}", "a",
+                          command_json_text(a->a), "b", command_json_text(a->b), "size", "width", (int)image->width,
+                          "height", (int)image->height, "unit", "pixel", "channels", channels, "limits", "rmse",
+                          command_json_number(a->max_rmse), "rel_mse", command_json_number(a->max_rel_mse), "z_of_mean",
                           command_json_number(a->max_z), "limits_exceeded", (int)exceeded, "passed", exceeded == 0);
     if (j && a->output)
-        json_object_set_new(j, "difference_picture", json_pack("{s:o, s:o}", "file", command_json_text(a->output), "full_colour",
-                            command_json_quantity(used_scale, comparison->channels[0].unit[0] ? comparison->channels[0].unit : NULL)));
+        json_object_set_new(
+            j, "difference_picture",
+            json_pack("{s:o, s:o}", "file", command_json_text(a->output), "full_colour",
+                      command_json_quantity(used_scale,
+                                            comparison->channels[0].unit[0] ? comparison->channels[0].unit : NULL)));
     return command_print_json("compare", j);
 }
 
 /* ---- all together ---- */
 
-static sr_status write_difference(const struct arguments *a, const struct sr_image *x, const struct sr_image *y, double *used_scale,
-                                  struct sr_error *error)
+static sr_status write_difference(const struct arguments *a, const struct sr_image *x, const struct sr_image *y,
+                                  double *used_scale, struct sr_error *error)
 {
     struct sr_image *picture;
     if (sr_image_difference_picture(x, y, a->scale, &picture, used_scale, error) == SR_OK)
@@ -245,14 +283,16 @@ static int compare(const struct arguments *a, const struct sr_image *x, const st
     struct sr_image_comparison comparison = {0};
     double used_scale = (double)NAN;
     if (x->width != y->width || x->height != y->height)
-        sr_fail(&error, SR_ERROR_INPUT, "%s is %u x %u pixels and %s is %u x %u: the same size was expected", a->a, x->width, x->height, a->b,
-                y->width, y->height);
-    bool ok = !error.status && sr_image_compare(x, y, &comparison, &error) == SR_OK && keep_chosen(a, x, &comparison, &error) == SR_OK;
+        sr_fail(&error, SR_ERROR_INPUT, "%s is %u x %u pixels and %s is %u x %u: the same size was expected", a->a,
+                x->width, x->height, a->b, y->width, y->height);
+    bool ok = !error.status && sr_image_compare(x, y, &comparison, &error) == SR_OK &&
+              keep_chosen(a, x, &comparison, &error) == SR_OK;
     bool has_z = false;
     for (uint32_t i = 0; ok && i < comparison.channel_count; ++i)
         has_z |= comparison.channels[i].has_z;
     if (ok && !isnan(a->max_z) && !has_z)
-        sr_fail(&error, SR_ERROR_INPUT, "--max-z needs standard errors (channels SE.R, …), neither %s nor %s has them", a->a, a->b);
+        sr_fail(&error, SR_ERROR_INPUT, "--max-z needs standard errors (channels SE.R, …), neither %s nor %s has them",
+                a->a, a->b);
     if (!error.status && a->output)
         write_difference(a, x, y, &used_scale, &error);
     if (error.status) {
@@ -262,7 +302,8 @@ static int compare(const struct arguments *a, const struct sr_image *x, const st
     if (!a->quiet && !a->json)
         print_table(a, x, &comparison);
     if (!a->quiet && !a->json && a->output)
-        printf("\n%s: red A is more, blue B is more, the full colour stands for %.4g %s\n", a->output, used_scale, unit_of(&comparison.channels[0]));
+        printf("\n%s: red A is more, blue B is more, the full colour stands for %.4g %s\n", a->output, used_scale,
+               unit_of(&comparison.channels[0]));
     fflush(stdout);
     unsigned exceeded = check_limits(a, &comparison);
     int code = a->json ? print_comparison_json(a, x, &comparison, used_scale, exceeded) : 0;
@@ -286,4 +327,5 @@ static int run(int argc, char **argv)
     return code;
 }
 
-const struct command command_compare = {"compare", "how far two pictures are apart, and whether by more than their noise", help, run};
+const struct command command_compare = {
+    "compare", "how far two pictures are apart, and whether by more than their noise", help, run};

@@ -81,8 +81,12 @@ static int parse(int argc, char **argv, struct arguments *a)
     bool ok = true;
     while (ok && (option = command_next_option(argc, argv, ":o:q", long_options, &index)) != -1)
         switch (option) {
-        case 'o': a->output = optarg; break;
-        case 'q': a->quiet = true; break;
+        case 'o':
+            a->output = optarg;
+            break;
+        case 'q':
+            a->quiet = true;
+            break;
         case OPT_EXPOSURE:
             a->has_exposure = true;
             ok = command_parse_float(c, "exposure", optarg, -100, 100, &a->exposure_EV);
@@ -95,15 +99,23 @@ static int parse(int argc, char **argv, struct arguments *a)
             a->has_crop = true;
             ok = parse_crop(optarg, a->crop);
             break;
-        case OPT_CHANNEL: a->channels = optarg; break;
-        case OPT_STATS: a->stats = true; break;
-        case OPT_JSON: a->json = true; break;
-        default: return command_bad_option(c, long_options, option, argv);
+        case OPT_CHANNEL:
+            a->channels = optarg;
+            break;
+        case OPT_STATS:
+            a->stats = true;
+            break;
+        case OPT_JSON:
+            a->json = true;
+            break;
+        default:
+            return command_bad_option(c, long_options, option, argv);
         }
     if (!ok)
         return SR_ERROR_USAGE;
     if (optind + 1 != argc)
-        return command_usage(c, optind == argc ? "a picture was expected" : "one picture was expected, there are %d", argc - optind);
+        return command_usage(c, optind == argc ? "a picture was expected" : "one picture was expected, there are %d",
+                             argc - optind);
     a->input = argv[optind];
     if (a->output && !command_is_image_ending(a->output))
         return command_usage(c, "%s: the ending .exr, .png, .pfm or .hdr was expected", a->output);
@@ -116,7 +128,8 @@ static int parse(int argc, char **argv, struct arguments *a)
 /* ---- chosen channels ---- */
 
 /* A picture of some channels; where they are to be shown and are three, they become R, G, B. */
-static sr_status pick_channels(const struct arguments *a, const struct sr_image *image, struct sr_image **picked, struct sr_error *error)
+static sr_status pick_channels(const struct arguments *a, const struct sr_image *image, struct sr_image **picked,
+                               struct sr_error *error)
 {
     struct sr_arena arena = {0};
     uint32_t count = 0, *indices = sr_arena_alloc(&arena, image->channel_count * sizeof *indices);
@@ -128,10 +141,12 @@ static sr_status pick_channels(const struct arguments *a, const struct sr_image 
     else
         command_select_channels(image, a->input, a->channels, indices, &count, error);
     if (!error->status && is_shown && count != 1 && count != 3)
-        sr_fail(error, SR_ERROR_USAGE, "%s: one channel or three can be written there, %s are %u", a->output, a->channels, count);
+        sr_fail(error, SR_ERROR_USAGE, "%s: one channel or three can be written there, %s are %u", a->output,
+                a->channels, count);
     for (uint32_t i = 0; !error->status && i < count; ++i)
         names[i] = is_shown && count == 3 ? (const char *[]){"R", "G", "B"}[i] : image->channels[indices[i]].name;
-    if (!error->status && sr_image_create(image->width, image->height, count, names, SR_IMAGE_FLOATS, picked, error) == SR_OK) {
+    if (!error->status &&
+        sr_image_create(image->width, image->height, count, names, SR_IMAGE_FLOATS, picked, error) == SR_OK) {
         struct sr_image *out = *picked;
         for (uint32_t i = 0; i < count; ++i)
             sr_image_set_unit(out, i, image->channels[indices[i]].unit);
@@ -154,21 +169,24 @@ static sr_status pick_channels(const struct arguments *a, const struct sr_image 
 static void print_statistics_row(const struct sr_image_channel *channel, const struct sr_image_statistics *s)
 {
     printf("%-12s %-9s %11.5g %11.5g %11.5g %11.5g %11.5g %11.5g %11.5g %9llu %9llu %6llu %6llu\n", channel->name,
-           channel->unit[0] ? channel->unit : "no unit", s->mean, s->deviation, s->min, s->percentile_1, s->percentile_50, s->percentile_99, s->max,
-           (unsigned long long)s->zero_count, (unsigned long long)s->negative_count, (unsigned long long)s->nan_count,
+           channel->unit[0] ? channel->unit : "no unit", s->mean, s->deviation, s->min, s->percentile_1,
+           s->percentile_50, s->percentile_99, s->max, (unsigned long long)s->zero_count,
+           (unsigned long long)s->negative_count, (unsigned long long)s->nan_count,
            (unsigned long long)s->infinite_count);
 }
 
 static json_t *statistics_json(const struct sr_image_channel *channel, const struct sr_image_statistics *s)
 {
-    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:{s:s, s:I, s:I, s:I, s:I, s:I}}", "name",
-                     command_json_text(channel->name), "unit", command_json_text(channel->unit[0] ? channel->unit : NULL), "mean",
-                     command_json_number(s->mean), "deviation", command_json_number(s->deviation), "min", command_json_number(s->min), "percentile_1",
-                     command_json_number(s->percentile_1), "percentile_5", command_json_number(s->percentile_5), "percentile_50",
-                     command_json_number(s->percentile_50), "percentile_95", command_json_number(s->percentile_95), "percentile_99",
-                     command_json_number(s->percentile_99), "max", command_json_number(s->max), "sum", command_json_number(s->sum), "pixels", "unit",
-                     "1", "finite", (json_int_t)s->count, "zero", (json_int_t)s->zero_count, "negative", (json_int_t)s->negative_count, "nan",
-                     (json_int_t)s->nan_count, "infinite", (json_int_t)s->infinite_count);
+    return json_pack(
+        "{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:{s:s, s:I, s:I, s:I, s:I, s:I}}", "name",
+        command_json_text(channel->name), "unit", command_json_text(channel->unit[0] ? channel->unit : NULL), "mean",
+        command_json_number(s->mean), "deviation", command_json_number(s->deviation), "min",
+        command_json_number(s->min), "percentile_1", command_json_number(s->percentile_1), "percentile_5",
+        command_json_number(s->percentile_5), "percentile_50", command_json_number(s->percentile_50), "percentile_95",
+        command_json_number(s->percentile_95), "percentile_99", command_json_number(s->percentile_99), "max",
+        command_json_number(s->max), "sum", command_json_number(s->sum), "pixels", "unit", "1", "finite",
+        (json_int_t)s->count, "zero", (json_int_t)s->zero_count, "negative", (json_int_t)s->negative_count, "nan",
+        (json_int_t)s->nan_count, "infinite", (json_int_t)s->infinite_count);
 }
 
 static int print_statistics(const struct arguments *a, const struct sr_image *image)
@@ -177,8 +195,8 @@ static int print_statistics(const struct arguments *a, const struct sr_image *im
     struct sr_error error = {0};
     if (!a->json) {
         printf("%s: %u x %u pixels\n\n", a->input, image->width, image->height);
-        printf("%-12s %-9s %11s %11s %11s %11s %11s %11s %11s %9s %9s %6s %6s\n", "channel", "unit", "mean", "deviation", "min", "1 %", "50 %", "99 %",
-               "max", "zero", "negative", "NaN", "inf");
+        printf("%-12s %-9s %11s %11s %11s %11s %11s %11s %11s %9s %9s %6s %6s\n", "channel", "unit", "mean",
+               "deviation", "min", "1 %", "50 %", "99 %", "max", "zero", "negative", "NaN", "inf");
     }
     for (uint32_t c = 0; c < image->channel_count; ++c) {
         struct sr_image_statistics s;
@@ -193,8 +211,9 @@ static int print_statistics(const struct arguments *a, const struct sr_image *im
         json_decref(channels);
         return error.status ? command_fail("image", &error) : 0;
     }
-    return command_print_json("image", json_pack("{s:o, s:{s:i, s:i, s:s}, s:o}", "file", command_json_text(a->input), "size", "width",
-                                                 (int)image->width, "height", (int)image->height, "unit", "pixel", "channels", channels));
+    return command_print_json("image", json_pack("{s:o, s:{s:i, s:i, s:s}, s:o}", "file", command_json_text(a->input),
+                                                 "size", "width", (int)image->width, "height", (int)image->height,
+                                                 "unit", "pixel", "channels", channels));
 }
 
 /* ---- all together ---- */
@@ -221,7 +240,8 @@ static sr_status prepare(const struct arguments *a, struct sr_image **image, str
     struct sr_image *part;
     if (a->has_crop) {
         struct sr_error inner = {0};
-        if (sr_image_crop(*image, (uint32_t)a->crop[0], (uint32_t)a->crop[1], (uint32_t)a->crop[2], (uint32_t)a->crop[3], &part, &inner) != SR_OK)
+        if (sr_image_crop(*image, (uint32_t)a->crop[0], (uint32_t)a->crop[1], (uint32_t)a->crop[2],
+                          (uint32_t)a->crop[3], &part, &inner) != SR_OK)
             return sr_fail(error, SR_ERROR_INPUT, "%s: %s", a->input, inner.text);
         sr_image_free(*image);
         *image = part;

@@ -49,11 +49,12 @@ static int print_image(const char *path, const struct sr_image *image)
 {
     printf("%s: a picture of %u x %u pixels, %u channels\n", path, image->width, image->height, image->channel_count);
     if (image->full_width != image->width || image->full_height != image->height || image->x0 || image->y0)
-        printf("  part of %u x %u pixels, from (%d, %d)\n", image->full_width, image->full_height, image->x0, image->y0);
+        printf("  part of %u x %u pixels, from (%d, %d)\n", image->full_width, image->full_height, image->x0,
+               image->y0);
     if (image->has_chromaticities) {
         const double(*k)[2] = image->chromaticities;
-        printf("  primaries [CIE 1931 x, y]: red %g, %g; green %g, %g; blue %g, %g; white %g, %g\n", k[0][0], k[0][1], k[1][0], k[1][1], k[2][0], k[2][1],
-               k[3][0], k[3][1]);
+        printf("  primaries [CIE 1931 x, y]: red %g, %g; green %g, %g; blue %g, %g; white %g, %g\n", k[0][0], k[0][1],
+               k[1][0], k[1][1], k[2][0], k[2][1], k[3][0], k[3][1]);
     }
     printf("\n  %-14s %-9s %-14s %12s %12s %12s\n", "channel", "unit", "type", "mean", "min", "max");
     for (uint32_t c = 0; c < image->channel_count; ++c) {
@@ -61,9 +62,11 @@ static int print_image(const char *path, const struct sr_image *image)
         struct sr_error error = {0};
         if (sr_image_statistics(image, c, &s, &error) != SR_OK)
             return command_fail("info", &error);
-        printf("  %-14s %-9s %-14s %12.6g %12.6g %12.6g", image->channels[c].name, unit_of(&image->channels[c]), type_of(image), s.mean, s.min, s.max);
+        printf("  %-14s %-9s %-14s %12.6g %12.6g %12.6g", image->channels[c].name, unit_of(&image->channels[c]),
+               type_of(image), s.mean, s.min, s.max);
         if (s.nan_count + s.infinite_count)
-            printf("  (%llu NaN, %llu infinite)", (unsigned long long)s.nan_count, (unsigned long long)s.infinite_count);
+            printf("  (%llu NaN, %llu infinite)", (unsigned long long)s.nan_count,
+                   (unsigned long long)s.infinite_count);
         putchar('\n');
     }
     if (image->attribute_count)
@@ -82,9 +85,12 @@ static int print_image_json(const char *path, const struct sr_image *image)
         if (sr_image_statistics(image, c, &s, &error) != SR_OK)
             break;
         const char *unit = image->channels[c].unit[0] ? image->channels[c].unit : NULL;
-        json_array_append_new(channels, json_pack("{s:o, s:o, s:s, s:o, s:o, s:o, s:I, s:I}", "name", command_json_text(image->channels[c].name), "unit",
-                              command_json_text(unit), "type", type_of(image), "mean", command_json_number(s.mean), "min", command_json_number(s.min),
-                              "max", command_json_number(s.max), "nan", (json_int_t)s.nan_count, "infinite", (json_int_t)s.infinite_count));
+        json_array_append_new(channels,
+                              json_pack("{s:o, s:o, s:s, s:o, s:o, s:o, s:I, s:I}", "name",
+                                        command_json_text(image->channels[c].name), "unit", command_json_text(unit),
+                                        "type", type_of(image), "mean", command_json_number(s.mean), "min",
+                                        command_json_number(s.min), "max", command_json_number(s.max), "nan",
+                                        (json_int_t)s.nan_count, "infinite", (json_int_t)s.infinite_count));
     }
     if (error.status) {
         json_decref(channels);
@@ -95,13 +101,15 @@ static int print_image_json(const char *path, const struct sr_image *image)
         json_object_set_new(attributes, image->attributes[i].name, command_json_text(image->attributes[i].text));
     if (image->has_chromaticities) {
         const double(*k)[2] = image->chromaticities;
-        primaries = json_pack("{s:[f,f], s:[f,f], s:[f,f], s:[f,f], s:s}", "red", k[0][0], k[0][1], "green", k[1][0], k[1][1], "blue", k[2][0], k[2][1],
-                              "white", k[3][0], k[3][1], "unit", "1");
+        primaries = json_pack("{s:[f,f], s:[f,f], s:[f,f], s:[f,f], s:s}", "red", k[0][0], k[0][1], "green", k[1][0],
+                              k[1][1], "blue", k[2][0], k[2][1], "white", k[3][0], k[3][1], "unit", "1");
     }
-    return command_print_json("info", json_pack("{s:o, s:s, s:{s:i, s:i, s:s}, s:{s:i, s:i, s:i, s:i, s:s}, s:o, s:o, s:o}", "file",
-                              command_json_text(path), "kind", "picture", "size", "width", (int)image->width, "height", (int)image->height, "unit",
-                              "pixel", "part_of", "width", (int)image->full_width, "height", (int)image->full_height, "x0", (int)image->x0, "y0",
-                              (int)image->y0, "unit", "pixel", "chromaticities", primaries, "channels", channels, "attributes", attributes));
+    return command_print_json(
+        "info", json_pack("{s:o, s:s, s:{s:i, s:i, s:s}, s:{s:i, s:i, s:i, s:i, s:s}, s:o, s:o, s:o}", "file",
+                          command_json_text(path), "kind", "picture", "size", "width", (int)image->width, "height",
+                          (int)image->height, "unit", "pixel", "part_of", "width", (int)image->full_width, "height",
+                          (int)image->full_height, "x0", (int)image->x0, "y0", (int)image->y0, "unit", "pixel",
+                          "chromaticities", primaries, "channels", channels, "attributes", attributes));
 }
 
 /* ---- which kind of file ---- */
@@ -109,18 +117,25 @@ static int print_image_json(const char *path, const struct sr_image *image)
 static int run(int argc, char **argv)
 {
     static const char *const scenes[] = {".pbrt", ".pbrt.gz", NULL};
-    static const char *const later[] = {".gltf", ".glb",  ".obj", ".usd", ".usda", ".usdc", ".usdz", ".blend", ".fbx",
-                                        ".dae",  ".xml",  ".abc", ".stl", ".rad",  ".ies",  ".ldt",  ".mtlx",  NULL};
+    static const char *const later[] = {".gltf", ".glb", ".obj", ".usd", ".usda", ".usdc", ".usdz", ".blend", ".fbx",
+                                        ".dae",  ".xml", ".abc", ".stl", ".rad",  ".ies",  ".ldt",  ".mtlx",  NULL};
     struct info_arguments a = {0};
     int option, index = 0;
     while ((option = command_next_option(argc, argv, ":q", long_options, &index)) != -1)
         switch (option) {
-        case 'j': a.json = true; break;
-        case 'q': a.quiet = true; break;
-        default: return command_bad_option(&command_info, long_options, option, argv);
+        case 'j':
+            a.json = true;
+            break;
+        case 'q':
+            a.quiet = true;
+            break;
+        default:
+            return command_bad_option(&command_info, long_options, option, argv);
         }
     if (optind + 1 != argc)
-        return command_usage(&command_info, optind == argc ? "a file was expected" : "one file was expected, there are %d", argc - optind);
+        return command_usage(&command_info,
+                             optind == argc ? "a file was expected" : "one file was expected, there are %d",
+                             argc - optind);
     a.path = argv[optind];
     if (strcmp(a.path, "-") == 0 || has_ending_of(a.path, scenes))
         return info_scene(&a);
@@ -128,16 +143,23 @@ static int run(int argc, char **argv)
     struct sr_error error = {0};
     struct sr_image *image = NULL;
     if (sr_file_exists(a.path) && has_ending_of(a.path, later))
-        sr_fail(&error, SR_ERROR_INPUT, "%s: this kind of file is not supported yet; scenes are .pbrt or .pbrt.gz, pictures EXR, PNG, JPEG, PFM, HDR, TGA", a.path);
+        sr_fail(&error, SR_ERROR_INPUT,
+                "%s: this kind of file is not supported yet; scenes are .pbrt or .pbrt.gz, pictures EXR, PNG, JPEG, "
+                "PFM, HDR, TGA",
+                a.path);
     else if (sr_file_exists(a.path) && (sr_path_has_ending(a.path, ".ply") || sr_path_has_ending(a.path, ".ply.gz")))
-        sr_fail(&error, SR_ERROR_INPUT, "%s: a mesh alone is not understood; a scene (.pbrt) names it by Shape \"plymesh\" \"string filename\"", a.path);
+        sr_fail(&error, SR_ERROR_INPUT,
+                "%s: a mesh alone is not understood; a scene (.pbrt) names it by Shape \"plymesh\" \"string filename\"",
+                a.path);
     else if (sr_image_read(a.path, &image, &error) == SR_OK) {
         int code = a.json ? print_image_json(a.path, image) : print_image(a.path, image);
         sr_image_free(image);
         return code;
     } else if (strstr(error.text, "is no image that can be read")) {
         error = (struct sr_error){0};
-        sr_fail(&error, SR_ERROR_INPUT, "%s: is neither a picture (EXR, PNG, JPEG, PFM, HDR, TGA) nor named like a scene (.pbrt, .pbrt.gz)", a.path);
+        sr_fail(&error, SR_ERROR_INPUT,
+                "%s: is neither a picture (EXR, PNG, JPEG, PFM, HDR, TGA) nor named like a scene (.pbrt, .pbrt.gz)",
+                a.path);
     }
     return command_fail("info", &error);
 }

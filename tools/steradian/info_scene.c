@@ -21,7 +21,8 @@ static struct kinds count_lights(const struct sr_scene *scene)
     struct kinds kinds = {0};
     const struct sr_lights *lights = sr_scene_lights(scene);
     for (uint32_t i = 0; i < lights->count; ++i) {
-        const char *name = lights->lights[i].model == &sr_light_area ? "area (one for each triangle or patch)" : lights->lights[i].model->name;
+        const char *name = lights->lights[i].model == &sr_light_area ? "area (one for each triangle or patch)"
+                                                                     : lights->lights[i].model->name;
         int k = 0;
         while (k < kinds.n && strcmp(kinds.name[k], name) != 0)
             ++k;
@@ -50,30 +51,35 @@ static void print_scene(const char *path, const struct sr_import_result *r, unsi
     struct kinds lights = count_lights(r->scene);
     struct sr_box box = sr_scene_bounds(r->scene);
     const struct sr_film_settings *f = &r->film;
-    printf("%s: a scene, hash %016llx, %u warning%s\n", path, (unsigned long long)r->hash, warnings, warnings == 1 ? "" : "s");
+    printf("%s: a scene, hash %016llx, %u warning%s\n", path, (unsigned long long)r->hash, warnings,
+           warnings == 1 ? "" : "s");
     printf("  sensor       %s\n", r->sensor.model->name);
-    printf("  film         %d x %d pixels, colour space %s, imaging ratio %g [1], file \"%s\"\n", f->width, f->height, sr_colour_space(f->space)->name,
-           imaging_ratio(f), f->filename);
+    printf("  film         %d x %d pixels, colour space %s, imaging ratio %g [1], file \"%s\"\n", f->width, f->height,
+           sr_colour_space(f->space)->name, imaging_ratio(f), f->filename);
     if (f->x0 || f->y0 || f->x1 != f->width || f->y1 != f->height)
         printf("               rendered: x %d to %d, y %d to %d [pixel]\n", f->x0, f->x1 - 1, f->y0, f->y1 - 1);
-    printf("  filter       %s, radius %g x %g pixels\n", r->filter.model->name, (double)r->filter.radius.x, (double)r->filter.radius.y);
+    printf("  filter       %s, radius %g x %g pixels\n", r->filter.model->name, (double)r->filter.radius.x,
+           (double)r->filter.radius.y);
     printf("  integrator   %s\n", r->integrator.model->name);
-    printf("  sampler      %s, %u samples per pixel, seed %u\n", r->sampler == SR_SAMPLER_SOBOL ? "sobol" : "independent", r->spp, r->seed);
+    printf("  sampler      %s, %u samples per pixel, seed %u\n",
+           r->sampler == SR_SAMPLER_SOBOL ? "sobol" : "independent", r->spp, r->seed);
     printf("  wavelengths  %g to %g nm\n", (double)SR_LAMBDA_MIN, (double)SR_LAMBDA_MAX);
     printf("  lights       %llu", (unsigned long long)c.lights);
     for (int i = 0; i < lights.n; ++i)
         printf("%s %llu %s", i ? "," : ":", lights.count[i], lights.name[i]);
-    printf("\n  surfaces     %llu triangles, %llu patches, %llu quadrics; %llu instances of %llu objects\n", (unsigned long long)c.triangles,
-           (unsigned long long)c.patches, (unsigned long long)c.quadrics, (unsigned long long)c.instances, (unsigned long long)c.objects);
+    printf("\n  surfaces     %llu triangles, %llu patches, %llu quadrics; %llu instances of %llu objects\n",
+           (unsigned long long)c.triangles, (unsigned long long)c.patches, (unsigned long long)c.quadrics,
+           (unsigned long long)c.instances, (unsigned long long)c.objects);
     if (c.degenerate)
         printf("               %llu primitives without area were left out\n", (unsigned long long)c.degenerate);
     printf("  materials    %llu\n", (unsigned long long)c.materials);
     if (sr_box_is_empty(box))
         printf("  bounds       nothing there\n");
     else
-        printf("  bounds       (%g, %g, %g) to (%g, %g, %g) m\n", (double)box.lo.x + 0, (double)box.lo.y + 0, (double)box.lo.z + 0, (double)box.hi.x + 0,
-               (double)box.hi.y + 0, (double)box.hi.z + 0);
-    printf("  memory       geometry %.2f MiB, acceleration %.2f MiB, peak %.1f MiB\n", MiB(c.geometry_B), MiB(c.acceleration_B), MiB(sr_peak_memory_B()));
+        printf("  bounds       (%g, %g, %g) to (%g, %g, %g) m\n", (double)box.lo.x + 0, (double)box.lo.y + 0,
+               (double)box.lo.z + 0, (double)box.hi.x + 0, (double)box.hi.y + 0, (double)box.hi.z + 0);
+    printf("  memory       geometry %.2f MiB, acceleration %.2f MiB, peak %.1f MiB\n", MiB(c.geometry_B),
+           MiB(c.acceleration_B), MiB(sr_peak_memory_B()));
     printf("  time         read %.3f s, built %.3f s\n", r->read_s, c.build_s);
 }
 
@@ -82,8 +88,9 @@ static json_t *bounds_json(struct sr_box box)
 {
     if (sr_box_is_empty(box))
         return json_null();
-    return json_pack("{s:[f,f,f], s:[f,f,f], s:s}", "min", (double)box.lo.x + 0, (double)box.lo.y + 0, (double)box.lo.z + 0, "max", (double)box.hi.x + 0,
-                     (double)box.hi.y + 0, (double)box.hi.z + 0, "unit", "m");
+    return json_pack("{s:[f,f,f], s:[f,f,f], s:s}", "min", (double)box.lo.x + 0, (double)box.lo.y + 0,
+                     (double)box.lo.z + 0, "max", (double)box.hi.x + 0, (double)box.hi.y + 0, (double)box.hi.z + 0,
+                     "unit", "m");
 }
 
 static int print_scene_json(const char *path, const struct sr_import_result *r, unsigned warnings)
@@ -95,26 +102,28 @@ static int print_scene_json(const char *path, const struct sr_import_result *r, 
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)r->hash);
     json_t *lights = json_object();
     for (int i = 0; i < kinds.n; ++i)
-        json_object_set_new(lights, strncmp(kinds.name[i], "area", 4) == 0 ? "area" : kinds.name[i], json_integer((json_int_t)kinds.count[i]));
+        json_object_set_new(lights, strncmp(kinds.name[i], "area", 4) == 0 ? "area" : kinds.name[i],
+                            json_integer((json_int_t)kinds.count[i]));
     json_t *j = json_pack(
         "{s:o, s:s, s:s, s:i, s:s, s:{s:i, s:i, s:i, s:i, s:i, s:i, s:s, s:s, s:o, s:o}, s:{s:s, s:o, s:o, s:s}, s:s,"
-        " s:{s:s, s:I, s:I}, s:{s:o, s:o, s:s}, s:o, s:{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I}, s:o, s:{s:I, s:I, s:I}, s:{s:o, s:o}}",
-        "file", command_json_text(path), "kind", "scene", "hash", hash, "warnings", (int)warnings, "sensor", r->sensor.model->name,
-        "film", "width", (int)f->width, "height", (int)f->height, "x0", (int)f->x0, "x1", (int)f->x1, "y0", (int)f->y0, "y1", (int)f->y1, "unit", "pixel",
-        "colour_space", sr_colour_space(f->space)->name, "imaging_ratio", command_json_quantity(imaging_ratio(f), "1"), "filename",
-        command_json_text(f->filename),
-        "filter", "name", r->filter.model->name, "radius_x", command_json_number((double)r->filter.radius.x), "radius_y",
-        command_json_number((double)r->filter.radius.y), "unit", "pixel",
-        "integrator", r->integrator.model->name,
-        "sampler", "name", r->sampler == SR_SAMPLER_SOBOL ? "sobol" : "independent", "samples_per_pixel", (json_int_t)r->spp, "seed", (json_int_t)r->seed,
-        "wavelengths", "min", command_json_number((double)SR_LAMBDA_MIN), "max", command_json_number((double)SR_LAMBDA_MAX), "unit", "nm",
-        "lights", lights,
-        "counts", "lights", (json_int_t)c.lights, "triangles", (json_int_t)c.triangles, "patches", (json_int_t)c.patches, "quadrics",
-        (json_int_t)c.quadrics, "instances", (json_int_t)c.instances, "objects", (json_int_t)c.objects, "materials", (json_int_t)c.materials,
-        "primitives_without_area", (json_int_t)c.degenerate,
-        "bounds", bounds_json(sr_scene_bounds(r->scene)),
-        "memory", "geometry_B", (json_int_t)c.geometry_B, "acceleration_B", (json_int_t)c.acceleration_B, "peak_B", (json_int_t)sr_peak_memory_B(),
-        "time", "read_s", command_json_number(r->read_s), "build_s", command_json_number(c.build_s));
+        " s:{s:s, s:I, s:I}, s:{s:o, s:o, s:s}, s:o, s:{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I}, s:o, s:{s:I, s:I, "
+        "s:I}, s:{s:o, s:o}}",
+        "file", command_json_text(path), "kind", "scene", "hash", hash, "warnings", (int)warnings, "sensor",
+        r->sensor.model->name, "film", "width", (int)f->width, "height", (int)f->height, "x0", (int)f->x0, "x1",
+        (int)f->x1, "y0", (int)f->y0, "y1", (int)f->y1, "unit", "pixel", "colour_space",
+        sr_colour_space(f->space)->name, "imaging_ratio", command_json_quantity(imaging_ratio(f), "1"), "filename",
+        command_json_text(f->filename), "filter", "name", r->filter.model->name, "radius_x",
+        command_json_number((double)r->filter.radius.x), "radius_y", command_json_number((double)r->filter.radius.y),
+        "unit", "pixel", "integrator", r->integrator.model->name, "sampler", "name",
+        r->sampler == SR_SAMPLER_SOBOL ? "sobol" : "independent", "samples_per_pixel", (json_int_t)r->spp, "seed",
+        (json_int_t)r->seed, "wavelengths", "min", command_json_number((double)SR_LAMBDA_MIN), "max",
+        command_json_number((double)SR_LAMBDA_MAX), "unit", "nm", "lights", lights, "counts", "lights",
+        (json_int_t)c.lights, "triangles", (json_int_t)c.triangles, "patches", (json_int_t)c.patches, "quadrics",
+        (json_int_t)c.quadrics, "instances", (json_int_t)c.instances, "objects", (json_int_t)c.objects, "materials",
+        (json_int_t)c.materials, "primitives_without_area", (json_int_t)c.degenerate, "bounds",
+        bounds_json(sr_scene_bounds(r->scene)), "memory", "geometry_B", (json_int_t)c.geometry_B, "acceleration_B",
+        (json_int_t)c.acceleration_B, "peak_B", (json_int_t)sr_peak_memory_B(), "time", "read_s",
+        command_json_number(r->read_s), "build_s", command_json_number(c.build_s));
     return command_print_json("info", j);
 }
 

@@ -29,8 +29,9 @@ sr_status command_check_output(const char *path, struct sr_error *error)
     if (exists && S_ISDIR(st.st_mode))
         return sr_fail(error, SR_ERROR_RESOURCE, "%s: cannot be written: it is a folder", path);
     if (exists && !S_ISREG(st.st_mode)) // a pipe or a device
-        return access(path, W_OK) == 0 ? SR_OK
-                                       : sr_fail(error, SR_ERROR_RESOURCE, "%s: cannot be written: %s", path, strerror(errno));
+        return access(path, W_OK) == 0
+                   ? SR_OK
+                   : sr_fail(error, SR_ERROR_RESOURCE, "%s: cannot be written: %s", path, strerror(errno));
     char beside[4096];
     if (snprintf(beside, sizeof beside, "%s.part-%ld", path, (long)getpid()) >= (int)sizeof beside)
         return sr_fail(error, SR_ERROR_RESOURCE, "%s: cannot be written: %s", path, strerror(ENAMETOOLONG));
@@ -60,7 +61,8 @@ static int rank(const char *name)
     return at ? (int)(at - order) : (int)sizeof order;
 }
 
-static sr_status unknown_channel(const struct sr_image *image, const char *label, const char *name, struct sr_error *error)
+static sr_status unknown_channel(const struct sr_image *image, const char *label, const char *name,
+                                 struct sr_error *error)
 {
     char list[512] = "";
     size_t n = 0;
@@ -130,7 +132,8 @@ int command_print_json(const char *name, json_t *json)
     struct sr_error error = {0};
     if (!json)
         sr_fail(&error, SR_ERROR_RESOURCE, "not enough memory for the JSON");
-    else if (json_dumpf(json, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) != 0 || putchar('\n') == EOF || fflush(stdout) != 0)
+    else if (json_dumpf(json, stdout, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) != 0 || putchar('\n') == EOF ||
+             fflush(stdout) != 0)
         sr_fail(&error, SR_ERROR_RESOURCE, "standard output cannot be written: %s", strerror(errno));
     json_decref(json);
     return error.status ? command_fail(name, &error) : 0;

@@ -38,7 +38,8 @@ static const char help[] =
     "\n"
     "While it renders: Ctrl-C (SIGINT) and SIGTERM write what there is and end with 130 or 143, a second one ends at\n"
     "once; SIGUSR1 writes what there is and goes on (kill -USR1 PID).\n"
-    "Exit codes: 0 done, 2 usage, 3 a bad scene, 4 the output cannot be written or memory is short, 130/143 interrupted.\n"
+    "Exit codes: 0 done, 2 usage, 3 a bad scene, 4 the output cannot be written or memory is short, 130/143 "
+    "interrupted.\n"
     "\n"
     "Examples:\n"
     "  steradian render scenes/cornell-box.pbrt -o cornell.exr -o cornell.png\n"
@@ -46,23 +47,63 @@ static const char help[] =
     "  zcat scene.pbrt.gz | steradian render - -o out.exr --json\n";
 
 enum {
-    OPT_SPP = 256, OPT_REPLICATES, OPT_SEED, OPT_THREADS, OPT_RESOLUTION, OPT_CROP, OPT_BOUNDS, OPT_LAMBDA, OPT_INTEGRATOR, OPT_SAMPLER,
-    OPT_EXPOSURE, OPT_AOV, OPT_NO_AOV, OPT_PARTIAL, OPT_TILE, OPT_NO_PIXEL_JITTER, OPT_NO_LAMBDA_JITTER, OPT_QUICK, OPT_PIXEL, OPT_SAMPLE,
-    OPT_REPLICATE, OPT_STATS, OPT_JSON, OPT_STAMP, OPT_IRRADIANCE,
+    OPT_SPP = 256,
+    OPT_REPLICATES,
+    OPT_SEED,
+    OPT_THREADS,
+    OPT_RESOLUTION,
+    OPT_CROP,
+    OPT_BOUNDS,
+    OPT_LAMBDA,
+    OPT_INTEGRATOR,
+    OPT_SAMPLER,
+    OPT_EXPOSURE,
+    OPT_AOV,
+    OPT_NO_AOV,
+    OPT_PARTIAL,
+    OPT_TILE,
+    OPT_NO_PIXEL_JITTER,
+    OPT_NO_LAMBDA_JITTER,
+    OPT_QUICK,
+    OPT_PIXEL,
+    OPT_SAMPLE,
+    OPT_REPLICATE,
+    OPT_STATS,
+    OPT_JSON,
+    OPT_STAMP,
+    OPT_IRRADIANCE,
 };
 
 static const struct option long_options[] = {
-    {"outfile", required_argument, NULL, 'o'}, {"spp", required_argument, NULL, OPT_SPP}, {"replicates", required_argument, NULL, OPT_REPLICATES},
-    {"seed", required_argument, NULL, OPT_SEED}, {"threads", required_argument, NULL, OPT_THREADS}, {"nthreads", required_argument, NULL, OPT_THREADS},
-    {"resolution", required_argument, NULL, OPT_RESOLUTION}, {"cropwindow", required_argument, NULL, OPT_CROP},
-    {"pixelbounds", required_argument, NULL, OPT_BOUNDS}, {"lambda", required_argument, NULL, OPT_LAMBDA},
-    {"integrator", required_argument, NULL, OPT_INTEGRATOR}, {"sampler", required_argument, NULL, OPT_SAMPLER},
-    {"exposure", required_argument, NULL, OPT_EXPOSURE}, {"aov", no_argument, NULL, OPT_AOV}, {"no-aov", no_argument, NULL, OPT_NO_AOV},
-    {"write-partial", required_argument, NULL, OPT_PARTIAL}, {"tile", required_argument, NULL, OPT_TILE},
-    {"disable-pixel-jitter", no_argument, NULL, OPT_NO_PIXEL_JITTER}, {"disable-wavelength-jitter", no_argument, NULL, OPT_NO_LAMBDA_JITTER},
-    {"quick", no_argument, NULL, OPT_QUICK}, {"pixel", required_argument, NULL, OPT_PIXEL}, {"sample", required_argument, NULL, OPT_SAMPLE},
-    {"replicate", required_argument, NULL, OPT_REPLICATE}, {"stats", no_argument, NULL, OPT_STATS}, {"json", no_argument, NULL, OPT_JSON},
-    {"irradiance", required_argument, NULL, OPT_IRRADIANCE}, {"stamp", no_argument, NULL, OPT_STAMP}, {"quiet", no_argument, NULL, 'q'}, {NULL, 0, NULL, 0},
+    {"outfile", required_argument, NULL, 'o'},
+    {"spp", required_argument, NULL, OPT_SPP},
+    {"replicates", required_argument, NULL, OPT_REPLICATES},
+    {"seed", required_argument, NULL, OPT_SEED},
+    {"threads", required_argument, NULL, OPT_THREADS},
+    {"nthreads", required_argument, NULL, OPT_THREADS},
+    {"resolution", required_argument, NULL, OPT_RESOLUTION},
+    {"cropwindow", required_argument, NULL, OPT_CROP},
+    {"pixelbounds", required_argument, NULL, OPT_BOUNDS},
+    {"lambda", required_argument, NULL, OPT_LAMBDA},
+    {"integrator", required_argument, NULL, OPT_INTEGRATOR},
+    {"sampler", required_argument, NULL, OPT_SAMPLER},
+    {"exposure", required_argument, NULL, OPT_EXPOSURE},
+    {"aov", no_argument, NULL, OPT_AOV},
+    {"no-aov", no_argument, NULL, OPT_NO_AOV},
+    {"write-partial", required_argument, NULL, OPT_PARTIAL},
+    {"tile", required_argument, NULL, OPT_TILE},
+    {"disable-pixel-jitter", no_argument, NULL, OPT_NO_PIXEL_JITTER},
+    {"disable-wavelength-jitter", no_argument, NULL, OPT_NO_LAMBDA_JITTER},
+    {"quick", no_argument, NULL, OPT_QUICK},
+    {"pixel", required_argument, NULL, OPT_PIXEL},
+    {"sample", required_argument, NULL, OPT_SAMPLE},
+    {"replicate", required_argument, NULL, OPT_REPLICATE},
+    {"stats", no_argument, NULL, OPT_STATS},
+    {"json", no_argument, NULL, OPT_JSON},
+    {"irradiance", required_argument, NULL, OPT_IRRADIANCE},
+    {"stamp", no_argument, NULL, OPT_STAMP},
+    {"quiet", no_argument, NULL, 'q'},
+    {NULL, 0, NULL, 0},
 };
 
 static bool take_numbers(struct render_arguments *a, int option, const char *name, const char *text)
@@ -91,7 +132,8 @@ static bool take_numbers(struct render_arguments *a, int option, const char *nam
         a->has_pixel = true;
         if (!command_parse_floats(c, name, text, 2, a->pixel))
             return false;
-        if (a->pixel[0] >= 0 && a->pixel[1] >= 0 && a->pixel[0] == floor(a->pixel[0]) && a->pixel[1] == floor(a->pixel[1]))
+        if (a->pixel[0] >= 0 && a->pixel[1] >= 0 && a->pixel[0] == floor(a->pixel[0]) &&
+            a->pixel[1] == floor(a->pixel[1]))
             return true;
         command_usage(c, "--pixel %s: X,Y in whole pixels from 0 up was expected", text);
         return false;
@@ -125,7 +167,8 @@ static bool take_numbers(struct render_arguments *a, int option, const char *nam
             a->import.crop_window[i] = (float)v[i];
         if (v[0] >= 0 && v[0] < v[1] && v[1] <= 1 && v[2] >= 0 && v[2] < v[3] && v[3] <= 1)
             return true;
-        command_usage(c, "--cropwindow %s: X0,X1,Y0,Y1 with 0 <= X0 < X1 <= 1 and 0 <= Y0 < Y1 <= 1 was expected", text);
+        command_usage(c, "--cropwindow %s: X0,X1,Y0,Y1 with 0 <= X0 < X1 <= 1 and 0 <= Y0 < Y1 <= 1 was expected",
+                      text);
         return false;
     case OPT_BOUNDS:
         a->import.has_pixel_bounds = true;
@@ -153,19 +196,42 @@ static int parse(int argc, char **argv, struct render_arguments *a)
                 return command_usage(&command_render, "at most %d output files", RENDER_MAX_OUTPUTS);
             a->outputs[a->output_count++] = optarg;
             break;
-        case 'q': a->quiet = true; break;
-        case OPT_INTEGRATOR: a->import.integrator = optarg; break;
-        case OPT_SAMPLER: a->sampler = optarg; break;
-        case OPT_AOV: a->aov = true; break;
-        case OPT_NO_AOV: a->aov = false; break;
-        case OPT_NO_PIXEL_JITTER: a->no_pixel_jitter = true; break;
-        case OPT_NO_LAMBDA_JITTER: a->no_lambda_jitter = true; break;
-        case OPT_QUICK: a->import.quick = true; break;
-        case OPT_STATS: a->stats = true; break;
-        case OPT_JSON: a->json = true; break;
-        case OPT_STAMP: a->stamp = true; break;
+        case 'q':
+            a->quiet = true;
+            break;
+        case OPT_INTEGRATOR:
+            a->import.integrator = optarg;
+            break;
+        case OPT_SAMPLER:
+            a->sampler = optarg;
+            break;
+        case OPT_AOV:
+            a->aov = true;
+            break;
+        case OPT_NO_AOV:
+            a->aov = false;
+            break;
+        case OPT_NO_PIXEL_JITTER:
+            a->no_pixel_jitter = true;
+            break;
+        case OPT_NO_LAMBDA_JITTER:
+            a->no_lambda_jitter = true;
+            break;
+        case OPT_QUICK:
+            a->import.quick = true;
+            break;
+        case OPT_STATS:
+            a->stats = true;
+            break;
+        case OPT_JSON:
+            a->json = true;
+            break;
+        case OPT_STAMP:
+            a->stamp = true;
+            break;
         case '?':
-        case ':': return command_bad_option(&command_render, long_options, option, argv);
+        case ':':
+            return command_bad_option(&command_render, long_options, option, argv);
         default:
             if (!take_numbers(a, option, long_options[index].name, optarg))
                 return SR_ERROR_USAGE;
@@ -174,7 +240,9 @@ static int parse(int argc, char **argv, struct render_arguments *a)
     if (a->sampler && strcmp(a->sampler, "sobol") != 0 && strcmp(a->sampler, "independent") != 0)
         return command_usage(&command_render, "--sampler %s: sobol or independent was expected", a->sampler);
     if (optind + 1 != argc)
-        return command_usage(&command_render, optind == argc ? "a scene file was expected" : "one scene file was expected, there are %d", argc - optind);
+        return command_usage(&command_render,
+                             optind == argc ? "a scene file was expected" : "one scene file was expected, there are %d",
+                             argc - optind);
     if (a->has_sample && !a->has_pixel)
         return command_usage(&command_render, "--sample needs --pixel: which pixel's sample?");
     a->scene = argv[optind];
@@ -186,38 +254,61 @@ static int parse(int argc, char **argv, struct render_arguments *a)
 static int print_sample(const struct render_arguments *a, const struct sr_render_job *job)
 {
     if (a->pixel[0] >= job->film.width || a->pixel[1] >= job->film.height)
-        return command_usage(&command_render, "--pixel %.0f,%.0f: the picture has %d x %d pixels", a->pixel[0], a->pixel[1], job->film.width, job->film.height);
+        return command_usage(&command_render, "--pixel %.0f,%.0f: the picture has %d x %d pixels", a->pixel[0],
+                             a->pixel[1], job->film.width, job->film.height);
     struct sr_worker worker = {0};
     struct sr_first_hit first;
     float rgb[3];
-    bool is_finite = sr_render_sample(job, (uint32_t)a->pixel[0], (uint32_t)a->pixel[1], (uint32_t)a->replicate, (uint32_t)a->sample, rgb, &first, &worker);
-    printf("pixel %u,%u sample %llu: RGB %.9g %.9g %.9g cd/m^2%s; %llu rays, %llu shadow rays, %llu surfaces\n", (unsigned)a->pixel[0], (unsigned)a->pixel[1],
-           (unsigned long long)a->sample, (double)rgb[0], (double)rgb[1], (double)rgb[2], is_finite ? "" : " (not finite)", (unsigned long long)worker.rays,
+    bool is_finite = sr_render_sample(job, (uint32_t)a->pixel[0], (uint32_t)a->pixel[1], (uint32_t)a->replicate,
+                                      (uint32_t)a->sample, rgb, &first, &worker);
+    printf("pixel %u,%u sample %llu: RGB %.9g %.9g %.9g cd/m^2%s; %llu rays, %llu shadow rays, %llu surfaces\n",
+           (unsigned)a->pixel[0], (unsigned)a->pixel[1], (unsigned long long)a->sample, (double)rgb[0], (double)rgb[1],
+           (double)rgb[2], is_finite ? "" : " (not finite)", (unsigned long long)worker.rays,
            (unsigned long long)worker.shadow_rays, (unsigned long long)worker.vertices);
     if (first.is_hit)
-        printf("first surface: p %.9g %.9g %.9g m, n %.6g %.6g %.6g, object %u, material %u\n", (double)first.p.x, (double)first.p.y, (double)first.p.z,
-               (double)first.n.x, (double)first.n.y, (double)first.n.z, first.object, first.material);
+        printf("first surface: p %.9g %.9g %.9g m, n %.6g %.6g %.6g, object %u, material %u\n", (double)first.p.x,
+               (double)first.p.y, (double)first.p.z, (double)first.n.x, (double)first.n.y, (double)first.n.z,
+               first.object, first.material);
     return 0;
 }
 
 /* ---- all together ---- */
 
-static struct sr_render_job make_job(const struct render_arguments *a, const struct sr_import_result *scene, bool with_aov, struct rendering *r)
+static struct sr_render_job make_job(const struct render_arguments *a, const struct sr_import_result *scene,
+                                     bool with_aov, struct rendering *r)
 {
     return (struct sr_render_job){
-        .scene = scene->scene, .sensor = scene->sensor, .filter = scene->filter, .integrator = scene->integrator, .film = scene->film,
-        .sampler = !a->sampler ? scene->sampler : strcmp(a->sampler, "sobol") == 0 ? SR_SAMPLER_SOBOL : SR_SAMPLER_INDEPENDENT,
-        .seed = a->has_seed ? (uint32_t)a->seed : scene->seed, .spp = scene->spp, .replicates = (uint32_t)a->replicates,
-        .lambda = {(float)a->lambda[0], (float)a->lambda[1]}, .jitter_pixel = scene->jitter_pixel && !a->no_pixel_jitter,
-        .jitter_lambda = scene->jitter_lambda && !a->no_lambda_jitter, .with_aov = with_aov, .threads = (int)a->threads, .tile = (int)a->tile,
-        .progress = render_on_progress, .progress_interval_s = 0.5, .user = r, .cancel = &render_interrupted,
+        .scene = scene->scene,
+        .sensor = scene->sensor,
+        .filter = scene->filter,
+        .integrator = scene->integrator,
+        .film = scene->film,
+        .sampler = !a->sampler                        ? scene->sampler
+                   : strcmp(a->sampler, "sobol") == 0 ? SR_SAMPLER_SOBOL
+                                                      : SR_SAMPLER_INDEPENDENT,
+        .seed = a->has_seed ? (uint32_t)a->seed : scene->seed,
+        .spp = scene->spp,
+        .replicates = (uint32_t)a->replicates,
+        .lambda = {(float)a->lambda[0], (float)a->lambda[1]},
+        .jitter_pixel = scene->jitter_pixel && !a->no_pixel_jitter,
+        .jitter_lambda = scene->jitter_lambda && !a->no_lambda_jitter,
+        .with_aov = with_aov,
+        .threads = (int)a->threads,
+        .tile = (int)a->tile,
+        .progress = render_on_progress,
+        .progress_interval_s = 0.5,
+        .user = r,
+        .cancel = &render_interrupted,
     };
 }
 
 /* The command that shows the first sample that was not finite again. */
-static void print_replay(const struct render_arguments *a, const struct sr_render_job *job, const struct sr_render_report *report)
+static void print_replay(const struct render_arguments *a, const struct sr_render_job *job,
+                         const struct sr_render_report *report)
 {
-    fprintf(stderr, "warning: %llu samples were not finite and count as zero; the first again: steradian render %s --seed %u --spp %u --resolution %d,%d",
+    fprintf(stderr,
+            "warning: %llu samples were not finite and count as zero; the first again: steradian render %s --seed %u "
+            "--spp %u --resolution %d,%d",
             (unsigned long long)report->dropped, a->scene, job->seed, job->spp, job->film.width, job->film.height);
     if (job->replicates)
         fprintf(stderr, " --replicates %u --replicate %u", job->replicates, report->dropped_replicate);
@@ -291,7 +382,8 @@ static int run(int argc, char **argv)
     struct sr_import_result scene;
     const uint32_t most = 1u << 20; // what the film takes [pixel]
     if (a.import.width > most || a.import.height > most)
-        sr_fail(&error, SR_ERROR_RESOURCE, "a picture of %u x %u pixels is too large: at most %u a side", a.import.width, a.import.height, most);
+        sr_fail(&error, SR_ERROR_RESOURCE, "a picture of %u x %u pixels is too large: at most %u a side",
+                a.import.width, a.import.height, most);
     else
         sr_import_pbrt(a.scene, &a.import, &scene, &log, &error);
     if (error.status)

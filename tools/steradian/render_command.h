@@ -15,11 +15,12 @@ struct render_arguments {
     int output_count;
     struct sr_import_options import;
     uint64_t seed, replicates, threads, tile, sample, replicate;
-    bool has_seed, has_pixel, has_sample, aov, quiet, json, stats, no_pixel_jitter, no_lambda_jitter, has_exposure, stamp;
+    bool has_seed, has_pixel, has_sample, aov, quiet, json, stats, no_pixel_jitter, no_lambda_jitter, has_exposure,
+        stamp;
     double pixel[2], exposure_EV, partial_s;
-    double lambda[2];                       // [nm]
+    double lambda[2]; // [nm]
     const char *sampler;
-    double meters[RENDER_MAX_METERS][6];    // [m] point, [1] normal
+    double meters[RENDER_MAX_METERS][6]; // [m] point, [1] normal
     int meter_count;
 };
 
@@ -42,7 +43,8 @@ const char *render_output_name(const struct render_arguments *a, const struct sr
 int render_check_outputs(const struct render_arguments *a, const struct sr_import_result *scene);
 /* Whether the picture and what belongs to it fit into this machine's memory. */
 sr_status render_check_memory(const struct sr_render_job *job, struct sr_error *error);
-sr_status render_write_outputs(const struct rendering *r, const struct sr_film *film, double elapsed_s, bool is_complete, struct sr_error *error);
+sr_status render_write_outputs(const struct rendering *r, const struct sr_film *film, double elapsed_s,
+                               bool is_complete, struct sr_error *error);
 
 /* SIGUSR1 asks for a partial picture; from the first moment, so that it never kills. */
 void render_catch_requests(void);
@@ -58,6 +60,7 @@ void render_on_progress(void *user, const struct sr_render_progress *p);
 json_t *render_measure(const struct render_arguments *a, const struct sr_render_job *job);
 void render_print_summary(const struct rendering *r, const struct sr_film *film, const struct sr_render_report *report);
 /* Takes meters over; the exit code. */
-int render_print_json(const struct rendering *r, const struct sr_film *film, const struct sr_render_report *report, json_t *meters);
+int render_print_json(const struct rendering *r, const struct sr_film *film, const struct sr_render_report *report,
+                      json_t *meters);
 
 #endif

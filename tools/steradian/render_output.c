@@ -32,7 +32,9 @@ int render_check_outputs(const struct render_arguments *a, const struct sr_impor
         if (!command_is_image_ending(name) && a->output_count)
             return command_usage(&command_render, "%s: the ending .exr, .png, .pfm or .hdr was expected", name);
         if (!command_is_image_ending(name))
-            sr_fail(&error, SR_ERROR_INPUT, "%s: the scene's own file name is \"%s\"; .exr, .png, .pfm and .hdr can be written: use -o", a->scene, name);
+            sr_fail(&error, SR_ERROR_INPUT,
+                    "%s: the scene's own file name is \"%s\"; .exr, .png, .pfm and .hdr can be written: use -o",
+                    a->scene, name);
     }
     return error.status ? command_fail("render", &error) : 0;
 }
@@ -41,7 +43,8 @@ int render_check_outputs(const struct render_arguments *a, const struct sr_impor
 static double pixel_B(const struct sr_render_job *job)
 {
     double channels = job->with_aov ? 25 : 7;
-    return (double)sizeof(struct sr_film_pixel) + (job->with_aov ? (double)sizeof(struct sr_film_aov) : 0) + 2 * channels * sizeof(float);
+    return (double)sizeof(struct sr_film_pixel) + (job->with_aov ? (double)sizeof(struct sr_film_aov) : 0) +
+           2 * channels * sizeof(float);
 }
 
 sr_status render_check_memory(const struct sr_render_job *job, struct sr_error *error)
@@ -50,14 +53,16 @@ sr_status render_check_memory(const struct sr_render_job *job, struct sr_error *
     double needed_B = width * height * pixel_B(job);
     double there_B = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
     if (there_B > 0 && needed_B > there_B)
-        return sr_fail(error, SR_ERROR_RESOURCE, "a picture of %.0f x %.0f pixels needs %.3g GiB of memory, this machine has %.3g GiB", width, height,
-                       needed_B / 1073741824, there_B / 1073741824);
+        return sr_fail(error, SR_ERROR_RESOURCE,
+                       "a picture of %.0f x %.0f pixels needs %.3g GiB of memory, this machine has %.3g GiB", width,
+                       height, needed_B / 1073741824, there_B / 1073741824);
     return SR_OK;
 }
 
 /* ---- writing ---- */
 
-static void describe(struct sr_image *image, const struct rendering *r, double elapsed_s, bool is_complete, struct sr_error *error)
+static void describe(struct sr_image *image, const struct rendering *r, double elapsed_s, bool is_complete,
+                     struct sr_error *error)
 {
     char text[64];
 #define ATTRIBUTE(name, ...)                                                                                           \
@@ -85,14 +90,16 @@ static void describe(struct sr_image *image, const struct rendering *r, double e
 #undef ATTRIBUTE
 }
 
-sr_status render_write_outputs(const struct rendering *r, const struct sr_film *film, double elapsed_s, bool is_complete, struct sr_error *error)
+sr_status render_write_outputs(const struct rendering *r, const struct sr_film *film, double elapsed_s,
+                               bool is_complete, struct sr_error *error)
 {
     struct sr_image *image;
     if (sr_render_image(film, true, r->job->replicates > 0, &image, error) != SR_OK)
         return error->status;
     describe(image, r, elapsed_s, is_complete, error);
     const struct render_arguments *a = r->arguments;
-    struct sr_image_write_options options = {.tone = {.op = SR_TONE_LINEAR, .is_auto = !a->has_exposure, .exposure_EV = (float)a->exposure_EV}};
+    struct sr_image_write_options options = {
+        .tone = {.op = SR_TONE_LINEAR, .is_auto = !a->has_exposure, .exposure_EV = (float)a->exposure_EV}};
     for (int i = 0; i < render_output_count(a); ++i)
         sr_image_write(render_output_name(a, r->scene, i), image, &options, error);
     sr_image_free(image);
@@ -118,7 +125,7 @@ static void on_request(int number)
     atomic_store(&is_partial_wanted, true);
 }
 
-static void catch(int number, void (*handler)(int))
+static void catch (int number, void (*handler)(int))
 {
     struct sigaction action = {.sa_handler = handler, .sa_flags = SA_RESTART};
     sigemptyset(&action.sa_mask);
@@ -127,13 +134,13 @@ static void catch(int number, void (*handler)(int))
 
 void render_catch_requests(void)
 {
-    catch(SIGUSR1, on_request);
+    catch (SIGUSR1, on_request);
 }
 
 void render_catch_interrupts(void)
 {
-    catch(SIGINT, on_interrupt);
-    catch(SIGTERM, on_interrupt);
+    catch (SIGINT, on_interrupt);
+    catch (SIGTERM, on_interrupt);
 }
 
 int render_interrupt_exit(void)
@@ -165,7 +172,8 @@ static void print_progress(const struct sr_render_progress *p)
     for (int i = 0; i < CELLS; ++i)
         bar[i] = i < p->share * CELLS ? '#' : '.';
     bar[CELLS] = 0;
-    fprintf(stderr, "\r%5.1f %% %s  %s, %s left, %.2f M rays/s\033[K", 100 * p->share, bar, duration(p->elapsed_s, elapsed), duration(p->left_s, left),
+    fprintf(stderr, "\r%5.1f %% %s  %s, %s left, %.2f M rays/s\033[K", 100 * p->share, bar,
+            duration(p->elapsed_s, elapsed), duration(p->left_s, left),
             p->elapsed_s > 0 ? 1e-6 * (double)p->rays / p->elapsed_s : 0);
 }
 

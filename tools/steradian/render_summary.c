@@ -23,17 +23,22 @@ json_t *render_measure(const struct render_arguments *a, const struct sr_render_
     json_t *list = json_array();
     for (int i = 0; i < a->meter_count; ++i) {
         const double *m = a->meters[i];
-        struct sr_irradiance E = sr_render_irradiance(job, (sr_vec3){(float)m[0], (float)m[1], (float)m[2]}, (sr_vec3){(float)m[3], (float)m[4], (float)m[5]},
-                                                      METER_SAMPLES, METER_REPLICATES);
+        struct sr_irradiance E =
+            sr_render_irradiance(job, (sr_vec3){(float)m[0], (float)m[1], (float)m[2]},
+                                 (sr_vec3){(float)m[3], (float)m[4], (float)m[5]}, METER_SAMPLES, METER_REPLICATES);
         double k = sr_student_quantile(0.975, E.degrees);
         if (!a->quiet)
-            fprintf(stderr, "irradiance at (%g, %g, %g) m, normal (%g, %g, %g): E_v = %.5g lx ± %.2g lx, E_e = %.5g W/m^2 ± %.2g W/m^2 (95 %%, k = %.2f, ν = %g)\n",
+            fprintf(stderr,
+                    "irradiance at (%g, %g, %g) m, normal (%g, %g, %g): E_v = %.5g lx ± %.2g lx, E_e = %.5g W/m^2 ± "
+                    "%.2g W/m^2 (95 %%, k = %.2f, ν = %g)\n",
                     m[0], m[1], m[2], m[3], m[4], m[5], E.E_v, k * E.E_v_error, E.E_e, k * E.E_e_error, k, E.degrees);
-        json_array_append_new(list, json_pack("{s:[f,f,f], s:[f,f,f], s:{s:s, s:o, s:o}, s:{s:s, s:o, s:o}, s:o, s:o}", "point_m", m[0], m[1], m[2], "normal",
-                                              m[3], m[4], m[5], "E_v", "unit", "lx", "value", command_json_number(E.E_v), "standard_uncertainty",
-                                              command_json_number(E.E_v_error), "E_e", "unit", "W/m^2", "value", command_json_number(E.E_e),
-                                              "standard_uncertainty", command_json_number(E.E_e_error), "degrees_of_freedom",
-                                              command_json_number(E.degrees), "coverage_factor", command_json_number(k)));
+        json_array_append_new(
+            list,
+            json_pack("{s:[f,f,f], s:[f,f,f], s:{s:s, s:o, s:o}, s:{s:s, s:o, s:o}, s:o, s:o}", "point_m", m[0], m[1],
+                      m[2], "normal", m[3], m[4], m[5], "E_v", "unit", "lx", "value", command_json_number(E.E_v),
+                      "standard_uncertainty", command_json_number(E.E_v_error), "E_e", "unit", "W/m^2", "value",
+                      command_json_number(E.E_e), "standard_uncertainty", command_json_number(E.E_e_error),
+                      "degrees_of_freedom", command_json_number(E.degrees), "coverage_factor", command_json_number(k)));
     }
     return list;
 }
@@ -45,42 +50,53 @@ void render_print_summary(const struct rendering *r, const struct sr_film *film,
     double k = sr_student_quantile(0.975, L.degrees);
     const char *kind = r->job->replicates ? "" : ", conservative";
     if (isfinite(L.standard_error))
-        fprintf(stderr, "mean luminance L_v = %.6g cd/m^2 ± %.2g cd/m^2 (95 %%, k = %.2f%s)\n", L.mean, k * L.standard_error, k, kind);
+        fprintf(stderr, "mean luminance L_v = %.6g cd/m^2 ± %.2g cd/m^2 (95 %%, k = %.2f%s)\n", L.mean,
+                k * L.standard_error, k, kind);
     else
         fprintf(stderr, "mean luminance L_v = %.6g cd/m^2 (one block of samples: its error is not known)\n", L.mean);
-    fprintf(stderr, "%u x %u pixels, %u samples each; %.2f s, %.2f M paths/s, %.2f M rays/s\n", film->width, film->height, r->job->spp,
-            report->render_s, 1e-6 * rate((double)report->paths, report->render_s), 1e-6 * rate((double)(report->rays + report->shadow_rays), report->render_s));
+    fprintf(stderr, "%u x %u pixels, %u samples each; %.2f s, %.2f M paths/s, %.2f M rays/s\n", film->width,
+            film->height, r->job->spp, report->render_s, 1e-6 * rate((double)report->paths, report->render_s),
+            1e-6 * rate((double)(report->rays + report->shadow_rays), report->render_s));
     if (r->arguments->stats)
         fprintf(stderr,
-                "scene: %llu triangles, %llu patches, %llu quadrics, %llu instances, %llu lights, %llu materials; read %.2f s, built %.2f s\n"
-                "memory: geometry %.1f MiB, acceleration %.1f MiB, peak %.1f MiB; rays %llu, shadow rays %llu, vertices %llu; left out: %llu primitives without area\n",
-                (unsigned long long)counts->triangles, (unsigned long long)counts->patches, (unsigned long long)counts->quadrics,
-                (unsigned long long)counts->instances, (unsigned long long)counts->lights, (unsigned long long)counts->materials, r->scene->read_s,
-                counts->build_s, (double)counts->geometry_B / 1048576, (double)counts->acceleration_B / 1048576, (double)sr_peak_memory_B() / 1048576,
-                (unsigned long long)report->rays, (unsigned long long)report->shadow_rays, (unsigned long long)report->vertices, (unsigned long long)counts->degenerate);
+                "scene: %llu triangles, %llu patches, %llu quadrics, %llu instances, %llu lights, %llu materials; read "
+                "%.2f s, built %.2f s\n"
+                "memory: geometry %.1f MiB, acceleration %.1f MiB, peak %.1f MiB; rays %llu, shadow rays %llu, "
+                "vertices %llu; left out: %llu primitives without area\n",
+                (unsigned long long)counts->triangles, (unsigned long long)counts->patches,
+                (unsigned long long)counts->quadrics, (unsigned long long)counts->instances,
+                (unsigned long long)counts->lights, (unsigned long long)counts->materials, r->scene->read_s,
+                counts->build_s, (double)counts->geometry_B / 1048576, (double)counts->acceleration_B / 1048576,
+                (double)sr_peak_memory_B() / 1048576, (unsigned long long)report->rays,
+                (unsigned long long)report->shadow_rays, (unsigned long long)report->vertices,
+                (unsigned long long)counts->degenerate);
 }
 
 /* The settings that made the picture, enough to make it again. */
 static json_t *settings_json(const struct rendering *r, const struct sr_film *film)
 {
     const struct sr_render_job *job = r->job;
-    return json_pack("{s:o, s:i, s:i, s:s, s:I, s:I, s:I, s:s, s:s, s:{s:o, s:o, s:s}}", "scene", command_json_text(r->arguments->scene), "width",
-                     (int)film->width, "height", (int)film->height, "size_unit", "pixel", "spp", (json_int_t)job->spp, "seed", (json_int_t)job->seed,
-                     "replicates", (json_int_t)job->replicates, "integrator", job->integrator.model->name, "sampler",
-                     job->sampler == SR_SAMPLER_SOBOL ? "sobol" : "independent", "wavelengths", "min", command_json_number((double)job->lambda.lo), "max",
-                     command_json_number((double)job->lambda.hi), "unit", "nm");
+    return json_pack("{s:o, s:i, s:i, s:s, s:I, s:I, s:I, s:s, s:s, s:{s:o, s:o, s:s}}", "scene",
+                     command_json_text(r->arguments->scene), "width", (int)film->width, "height", (int)film->height,
+                     "size_unit", "pixel", "spp", (json_int_t)job->spp, "seed", (json_int_t)job->seed, "replicates",
+                     (json_int_t)job->replicates, "integrator", job->integrator.model->name, "sampler",
+                     job->sampler == SR_SAMPLER_SOBOL ? "sobol" : "independent", "wavelengths", "min",
+                     command_json_number((double)job->lambda.lo), "max", command_json_number((double)job->lambda.hi),
+                     "unit", "nm");
 }
 
 static json_t *luminance_json(const struct sr_film *film)
 {
     struct sr_film_mean L = mean_luminance(film);
     double k = sr_student_quantile(0.975, L.degrees);
-    return json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:f}", "unit", "cd/m^2", "value", command_json_number(L.mean), "standard_uncertainty",
-                     command_json_number(L.standard_error), "degrees_of_freedom", command_json_number(L.degrees), "coverage_factor",
-                     command_json_number(k), "expanded_uncertainty", command_json_number(k * L.standard_error), "level", 0.95);
+    return json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:f}", "unit", "cd/m^2", "value", command_json_number(L.mean),
+                     "standard_uncertainty", command_json_number(L.standard_error), "degrees_of_freedom",
+                     command_json_number(L.degrees), "coverage_factor", command_json_number(k), "expanded_uncertainty",
+                     command_json_number(k * L.standard_error), "level", 0.95);
 }
 
-int render_print_json(const struct rendering *r, const struct sr_film *film, const struct sr_render_report *report, json_t *meters)
+int render_print_json(const struct rendering *r, const struct sr_film *film, const struct sr_render_report *report,
+                      json_t *meters)
 {
     struct sr_scene_counts counts = sr_scene_count(r->scene->scene);
     char hash[17];
@@ -89,14 +105,16 @@ int render_print_json(const struct rendering *r, const struct sr_film *film, con
     for (int i = 0; i < render_output_count(r->arguments); ++i)
         json_array_append_new(outputs, command_json_text(render_output_name(r->arguments, r->scene, i)));
     json_t *j = json_pack(
-        "{s:s, s:s, s:o, s:b, s:o, s:o, s:{s:f, s:f, s:f, s:f, s:f, s:I}, s:{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I}, s:o}",
-        "version", SR_VERSION, "scene_hash", hash, "outputs", outputs, "complete", report->is_complete, "settings", settings_json(r, film),
-        "mean_luminance", luminance_json(film), "time", "read_s", r->scene->read_s, "build_s", counts.build_s, "render_s", report->render_s,
-        "paths_per_s", rate((double)report->paths, report->render_s), "rays_per_s",
-        rate((double)(report->rays + report->shadow_rays), report->render_s), "peak_memory_B", (json_int_t)sr_peak_memory_B(), "counts", "triangles",
-        (json_int_t)counts.triangles, "patches", (json_int_t)counts.patches, "quadrics", (json_int_t)counts.quadrics, "lights", (json_int_t)counts.lights,
-        "paths", (json_int_t)report->paths, "rays", (json_int_t)report->rays, "shadow_rays", (json_int_t)report->shadow_rays, "vertices",
-        (json_int_t)report->vertices, "dropped_samples", (json_int_t)report->dropped, "primitives_without_area", (json_int_t)counts.degenerate,
-        "irradiance", meters);
+        "{s:s, s:s, s:o, s:b, s:o, s:o, s:{s:f, s:f, s:f, s:f, s:f, s:I}, s:{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, "
+        "s:I, s:I}, s:o}",
+        "version", SR_VERSION, "scene_hash", hash, "outputs", outputs, "complete", report->is_complete, "settings",
+        settings_json(r, film), "mean_luminance", luminance_json(film), "time", "read_s", r->scene->read_s, "build_s",
+        counts.build_s, "render_s", report->render_s, "paths_per_s", rate((double)report->paths, report->render_s),
+        "rays_per_s", rate((double)(report->rays + report->shadow_rays), report->render_s), "peak_memory_B",
+        (json_int_t)sr_peak_memory_B(), "counts", "triangles", (json_int_t)counts.triangles, "patches",
+        (json_int_t)counts.patches, "quadrics", (json_int_t)counts.quadrics, "lights", (json_int_t)counts.lights,
+        "paths", (json_int_t)report->paths, "rays", (json_int_t)report->rays, "shadow_rays",
+        (json_int_t)report->shadow_rays, "vertices", (json_int_t)report->vertices, "dropped_samples",
+        (json_int_t)report->dropped, "primitives_without_area", (json_int_t)counts.degenerate, "irradiance", meters);
     return command_print_json("render", j);
 }
