@@ -17,8 +17,8 @@ struct said {
     char out[MAX_SAID], err[MAX_SAID];
 };
 
-/* Runs `steradian ARGUMENTS` (words split at blanks) in the test's folder, standard input from the file `input` or empty
- * where it is NULL. Static result; a crash (signal, or a sanitizer's report) fails the test. */
+/* Runs `steradian ARGUMENTS` (words split at blanks) in the test's folder, standard input from the file `input` or
+ * empty where it is NULL. Static result; a crash (signal, or a sanitizer's report) fails the test. */
 const struct said *run(const char *arguments, const char *input);
 /* The same, and the exit code must be this one. */
 const struct said *run_expecting(int code, const char *arguments);

@@ -33,13 +33,18 @@ struct rendering {
     bool on_terminal;
 };
 
+/* ---- render_arguments.c ---- */
+
+/* Fills the arguments; 0, or the exit code of a mistake that has been told. */
+int render_parse(int argc, char **argv, struct render_arguments *a);
+
 /* ---- render_output.c ---- */
 
 /* The files to write: those of -o, or the scene's own. */
 int render_output_count(const struct render_arguments *a);
 const char *render_output_name(const struct render_arguments *a, const struct sr_import_result *scene, int i);
-/* Endings that are known, folders that can be written: before any work. 0, or the exit code of a failure that has been told.
- * scene: NULL while it is not read yet. */
+/* Endings that are known, folders that can be written: before any work. 0, or the exit code of a failure that has been
+ * told. scene: NULL while it is not read yet. */
 int render_check_outputs(const struct render_arguments *a, const struct sr_import_result *scene);
 /* Whether the picture and what belongs to it fit into this machine's memory. */
 sr_status render_check_memory(const struct sr_render_job *job, struct sr_error *error);
