@@ -17,7 +17,7 @@
 #include <float.h>
 
 enum kind { GENERAL, PARALLELOGRAM, RECTANGLE, EMPTY };
-static const float small_extent2 = 0.015f; // (diagonal / distance)^2 below which area sampling is taken
+static const float small_extent2 = 1.5f; // (diagonal / distance)^2 below which area sampling is taken
 static const float min_solid_angle = 3e-4f, max_solid_angle = 6.22f; // [sr]
 
 #define B struct sr_shape_patches
