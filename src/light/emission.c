@@ -3,7 +3,7 @@
  *
  *     s'(lambda) = luminance s(lambda) / INTEGRAL s ybar dlambda         so  INTEGRAL s' ybar dlambda = luminance  [cd/m^2]
  *
- * Spectra are thus over 683 lm/W: 683 s' is in W m^-2 sr^-1 nm^-1. An RGB emission is rgb times a white illuminant, and is
+ * Spectra thus contain 683 lm/W: s' / 683 is in W m^-2 sr^-1 nm^-1. An RGB emission is rgb times a white illuminant, and is
  * normalised by the white alone, as pbrt-v4 does: grey 0.5 is half as bright as white.
  * Limits: a spectrum without luminance (all of it outside 360 to 830 nm) has no such factor and is refused. */
 #include "light/emission.h"

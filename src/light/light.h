@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What shines: one file a kind; and how one is chosen among many.
  *
- * A light is two words, {model, self}. Radiance that leaves it is in W m^-2 sr^-1 nm^-1 over 683 lm/W in scenes that give
+ * A light is two words, {model, self}. Radiance that leaves it is 683 lm/W times that in W m^-2 sr^-1 nm^-1, in scenes that give
  * photometric numbers, so that the integral with ybar is in cd/m^2 (docs/units.md). */
 #ifndef SR_LIGHT_LIGHT_H
 #define SR_LIGHT_LIGHT_H
