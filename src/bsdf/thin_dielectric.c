@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* A window pane: two smooth parallel boundaries, seen as one surface; light goes straight through or is mirrored.
  *
- *     R = R0 + T0^2 R0 / (1 - R0^2) = 2 R0 / (1 + R0),    T = 1 - R    [1]
+ *     R = [ 2 Rs / (1 + Rs) + 2 Rp / (1 + Rp) ] / 2,    T = 1 - R    [1]
  *
- * with R0 Fresnel's unpolarised reflectance of one boundary and T0 = 1 - R0: all bounces inside, incoherent (Stokes 1862).
- * The series is summed for unpolarised light, as the renderers that we compare with do; summing per polarisation and
- * averaging afterwards is exact and differs by 0.003 at 60 deg. Nothing is absorbed. */
+ * with Fresnel's reflectances Rs and Rp of one boundary for the two polarisations: all bounces inside, incoherent, each
+ * polarisation by itself, for it stays what it is from bounce to bounce (Stokes 1862). sums_as_pbrt puts the mean of Rs and
+ * Rp in the place of both: T of n = 1.52 is then too small by 0.003 at 45 deg and 0.013 at 60. Nothing is absorbed. */
 #include "bsdf/microfacet.h"
 
 static const struct sr_param params[] = {
@@ -13,6 +13,20 @@ static const struct sr_param params[] = {
      "index of refraction of the pane"},
     {0},
 };
+
+// reflectance of the pane, with cos_i on its outside
+static float pane(float cos_i, float eta, bool sums_as_pbrt)
+{
+    cos_i = smaller(cos_i, 1);
+    float sin2_t = (1 - cos_i) * (1 + cos_i) / (eta * eta);
+    if (sin2_t >= 1)
+        return 1;
+    float ct = sqrtf(1 - sin2_t);
+    float r_p = sr_sqr((eta * cos_i - ct) / (eta * cos_i + ct)), r_s = sr_sqr((cos_i - eta * ct) / (cos_i + eta * ct));
+    if (sums_as_pbrt)
+        r_p = r_s = (r_p + r_s) * 0.5f;
+    return r_p / (1 + r_p) + r_s / (1 + r_s);
+}
 
 static uint32_t lobes(const void *self)
 {
@@ -46,8 +60,7 @@ static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum s
     (void)mode;
     if (wo.z == 0)
         return false;
-    float R0 = fresnel(fabsf(wo.z), m->eta);
-    float R = R0 < 1 ? 2 * R0 / (1 + R0) : 1;
+    float R = pane(fabsf(wo.z), m->eta, m->sums_as_pbrt);
     bool reflects = u_lobe < R;
     float share = reflects ? R : 1 - R;
     *s = (struct sr_bsdf_sample){.wi = reflects ? (sr_vec3){-wo.x, -wo.y, wo.z} : sr_neg(wo),

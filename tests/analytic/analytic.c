@@ -62,9 +62,12 @@ void check(const struct row *row, const char *how, struct estimate e, double goa
 void run_rows(const char *title, const struct row *rows)
 {
     failures = 0;
+    setvbuf(stdout, NULL, _IOLBF, 0);
     printf("%s\n  %-12s %-10s %-16s %-16s    %-9s %9s %7s\n", title, "id", "how", "value", "ours", "SE", "relative", "z");
+    const char *only = getenv("STERADIAN_TEST_ROWS"); // how their ids begin
     for (const struct row *row = rows; row->id; ++row)
-        row->measure(row);
+        if (!only || strncmp(row->id, only, strlen(only)) == 0)
+            row->measure(row);
     if (failures)
         test_fail(__FILE__, __LINE__, "%s: %d measurements are wrong or not sharp", title, failures);
 }

@@ -3,7 +3,8 @@
  *
  * A row is a case whose answer is known. Monte Carlo: |z| < 4.9 and a relative standard error of at most 1.25e-4 (finds a
  * bias of 0.1 % with a power of 99.9 %), or within 1e-5, the resolution of float. STERADIAN_TEST_EFFORT=n takes n times the
- * samples: rows that state a wider goal come down to 1.25e-4 with it. */
+ * samples: rows that state a wider goal come down to 1.25e-4 with it.
+ * STERADIAN_TEST_ROWS=D1 measures only the rows whose ids begin so. */
 #ifndef SR_TESTS_ANALYTIC_ANALYTIC_H
 #define SR_TESTS_ANALYTIC_ANALYTIC_H
 
