@@ -17,7 +17,7 @@ static const struct sr_param params[] = {
 // reflectance of the pane, with cos_i on its outside
 static float pane(float cos_i, float eta, bool sums_as_pbrt)
 {
-    cos_i = smaller(cos_i, 1);
+    cos_i = cos_i < 1 ? cos_i : 1;
     float sin2_t = (1 - cos_i) * (1 + cos_i) / (eta * eta);
     if (sin2_t >= 1)
         return 1;
