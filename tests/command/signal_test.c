@@ -37,7 +37,7 @@ static void expect_partial(const char *name)
 }
 
 /* Minutes of work in units of milliseconds: its first partial picture tells that it runs. */
-#define STEADY "render " CORNELL " --resolution 256,256 --spp 20000 --write-partial 0.1 -o "
+#define STEADY "render " CORNELL " --resolution 256,256 --spp 5000 --write-partial 0.1 -o "
 
 static void expect_interrupted(int number, int code)
 {
@@ -79,7 +79,7 @@ TEST(signal_request_writes_a_partial_picture_and_the_render_goes_on)
     remove_file("asked.exr");
     remove_file("asked.pfm");
     // no partial pictures but the one that is asked for
-    pid_t pid = start("render " CORNELL " --resolution 256,256 --spp 20000 -o asked.exr");
+    pid_t pid = start("render " CORNELL " --resolution 256,256 --spp 5000 -o asked.exr");
     double start_s = sr_clock_s();
     while (count_files("asked.exr") == 0 && sr_clock_s() - start_s < 60) {
         nap(0.1);
