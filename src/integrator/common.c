@@ -42,6 +42,27 @@ void sr_first_footprint(const struct sr_path_start *start, struct sr_point *x)
     sr_point_set_footprint(x, offsets[0], offsets[1]);
 }
 
+void sr_seen_footprint(const struct sr_path_start *start, struct sr_point *x)
+{
+    struct sr_path_start seen = *start;
+    sr_vec3 a = start->ray.d, way = sr_sub(x->p, start->ray.o);
+    float distance2 = sr_length2(way);
+    if (distance2 > 0) {
+        // the smallest rotation that takes a to b: v + k x v + k x (k x v) / (1 + a . b), k = a x b
+        sr_vec3 b = sr_scale(1 / sqrtf(distance2), way), k = sr_cross(a, b);
+        float c = 1 + sr_dot(a, b);
+        seen.ray.d = b;
+        if (c > 1e-4f) {
+            sr_vec3 *turned[4] = {&seen.dodx, &seen.dody, &seen.dddx, &seen.dddy};
+            for (int i = 0; i < 4; ++i) {
+                sr_vec3 once = sr_cross(k, *turned[i]);
+                *turned[i] = sr_mad(sr_add(*turned[i], once), 1 / c, sr_cross(k, once));
+            }
+        }
+    }
+    sr_first_footprint(&seen, x);
+}
+
 sr_spectrum sr_escape_Le(const struct sr_scene *scene, sr_vec3 w, const struct sr_wavelengths *wavelengths)
 {
     const struct sr_lights *lights = sr_scene_lights(scene);

@@ -48,6 +48,10 @@ bool sr_unoccluded(const struct sr_scene *scene, const struct sr_point *x, const
 
 /* The footprint of a sensor ray where it meets a surface: the neighbouring rays, on the tangent plane. */
 void sr_first_footprint(const struct sr_path_start *start, struct sr_point *x);
+/* The footprint that a pixel would have at x if the sensor saw x straight on, whatever hides it: what matters where a
+ * path has been scattered, which looks at x from all sides. Bump maps tilt by it, so it decides what they look like; it
+ * is what pbrt takes (Pharr, Jakob & Humphreys 2023, 10.1.2). */
+void sr_seen_footprint(const struct sr_path_start *start, struct sr_point *x);
 
 /* Radiance of all infinite lights along an escaping ray. */
 sr_spectrum sr_escape_Le(const struct sr_scene *scene, sr_vec3 w, const struct sr_wavelengths *wavelengths);

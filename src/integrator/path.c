@@ -76,6 +76,7 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
     sr_spectrum beta = SR_ONE;  // product of f |cos theta_i| / pdf             [1]
     float pdf = INFINITY;       // density that chose ray.d                     [1/sr]; infinite: no light sampling could compete
     float eta_scale = 1;        // what refraction has made of beta, and will undo [1]
+    bool is_scattered = false;  // by more than mirrors and clear glass
     float width = 0;            // of the path at its last surface              [m]
     float spread = 0.5f * (sr_length(start->dddx) + sr_length(start->dddy)); // [1]
     struct sr_point from = {0}; // where the path was scattered last
@@ -111,6 +112,8 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
             sr_first_footprint(start, &x.point);
             if (first)
                 first->point = x.point;
+        } else if (is_scattered) {
+            sr_seen_footprint(start, &x.point);
         } else {
             width += spread * x.t;
             struct sr_frame tangent = sr_frame_from_z(x.point.n);
@@ -145,6 +148,7 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
         pdf = s.lobe & SR_LOBE_SPECULAR ? INFINITY : s.pdf_is_proportional ? sr_bsdf_pdf(&bsdf, wo, s.wi, SR_RADIANCE) : s.pdf;
         if (s.lobe & SR_LOBE_TRANSMISSION)
             eta_scale *= s.eta * s.eta;
+        is_scattered |= !(s.lobe & SR_LOBE_SPECULAR);
         if (bounce == 0)
             width = 0.5f * (sr_length(x.point.dpdx) + sr_length(x.point.dpdy));
         from = x.point;

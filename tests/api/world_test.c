@@ -109,6 +109,42 @@ TEST(a_seed_makes_another_picture_and_the_same_seed_the_same)
     sr_world_destroy(world);
 }
 
+/* How far a bump map tilts the surface depends on the footprint that it is read with, so that must not depend on how often
+ * a pixel is sampled. */
+TEST(more_samples_do_not_change_what_a_bump_map_is_expected_to_look_like)
+{
+    static const char *const waves =
+        "LookAt 0 3 -1  0 0 0  0 1 0\n"
+        "Camera \"perspective\" \"float fov\" 45\n"
+        "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 16 \"string filename\" \"out.exr\"\n"
+        "PixelFilter \"box\"\n"
+        "Integrator \"path\" \"integer maxdepth\" 1\n"
+        "WorldBegin\n"
+        "LightSource \"distant\" \"rgb L\" [ 1 1 1 ] \"float scale\" 100 \"point3 from\" [ 1 0.5 0 ] \"point3 to\" [ 0 0 0 ]\n"
+        "Texture \"waves\" \"float\" \"checkerboard\" \"float uscale\" 150 \"float vscale\" 150 \"float tex1\" 0.1 \"float tex2\" 0\n"
+        "Material \"diffuse\" \"rgb reflectance\" [ 0.5 0.5 0.5 ] \"texture displacement\" \"waves\"\n"
+        "Shape \"bilinearmesh\" \"point3 P\" [ -9 0 -9  9 0 -9  -9 0 9  9 0 9 ]\n";
+    struct sr_world *world = load(write_scene("waves.pbrt", waves));
+    double mean[2] = {0, 0}, variance[2] = {0, 0};
+    for (int i = 0; i < 2; ++i) {
+        struct sr_picture *picture;
+        uint32_t spp = i ? 256 : 4;
+        EXPECT_EQUAL_INT(sr_world_render(world, &(struct sr_render_settings){.spp = spp}, &picture, NULL, 0), SR_OK);
+        uint32_t green = find_channel(picture, "G"), error = find_channel(picture, "SE.G"), w = sr_picture_width(picture), h = sr_picture_height(picture);
+        for (uint32_t y = 0; y < h; ++y)
+            for (uint32_t x = 0; x < w; ++x) {
+                double e = (double)sr_picture_value(picture, x, y, error) / (w * h);
+                mean[i] += (double)sr_picture_value(picture, x, y, green) / (w * h);
+                variance[i] += e * e;
+            }
+        sr_picture_destroy(picture);
+    }
+    double error = sqrt(variance[0] + variance[1]);
+    EXPECT(error < 0.04 * mean[1]);
+    EXPECT_NEAR(mean[0], mean[1], 4.9 * error);
+    sr_world_destroy(world);
+}
+
 TEST(what_may_be_null_is_null)
 {
     sr_world_destroy(NULL);
