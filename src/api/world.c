@@ -119,6 +119,8 @@ sr_status sr_world_irradiance(const struct sr_world *world, const double point_m
         return SR_ERROR_USAGE;
     struct sr_render_job job = job_of(world);
     struct sr_irradiance E = sr_render_irradiance(&job, p, n, samples, replicates);
+    if (isnan(E.E_v))
+        return SR_ERROR_RESOURCE;
     if (E_v)
         *E_v = (struct sr_reading){E.E_v, E.E_v_error, E.degrees, "lx"};
     if (E_e)

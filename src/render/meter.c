@@ -40,7 +40,7 @@ static void measure_replicate(void *context, uint64_t r)
 
 struct sr_irradiance sr_render_irradiance(const struct sr_render_job *job, sr_vec3 p, sr_vec3 n, uint32_t samples, uint32_t replicates)
 {
-    struct sr_irradiance E = {.degrees = replicates - 1};
+    struct sr_irradiance E = {NAN, NAN, NAN, NAN, replicates - 1}; // until measured: no memory, no number
     struct sr_arena arena = {0};
     struct measuring m = {.job = job, .samples = samples, .x = {.p = p, .n = sr_normalize(n)}};
     m.x.ns = m.x.n;

@@ -75,7 +75,7 @@ static int print_sample(const struct render_arguments *a, const struct sr_render
  * progress, partial pictures and Ctrl-C need not wait. The bytes of the picture do not depend on it. */
 static int choose_tile(const struct render_arguments *a, const struct sr_import_result *scene)
 {
-    double unit_samples = 1 << 20, blocks = a->replicates ? (double)a->replicates : 4;
+    double unit_samples = 1 << 17, blocks = a->replicates ? (double)a->replicates : 4;
     double side = sqrt(unit_samples * blocks / scene->spp);
     return a->tile ? (int)a->tile : side < 1 ? 1 : side > 16 ? 16 : (int)side;
 }
