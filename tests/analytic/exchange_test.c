@@ -32,7 +32,7 @@ static struct estimate exchange(const struct row *row, point_on *point, const ch
         struct world w = world_of("Integrator \"path\" \"integer maxdepth\" %d\nWorldBegin\n" BLACK "AttributeBegin\n" GLOW_BOTH
                                   "%s\nAttributeEnd\nAttributeBegin\n" GREY "%s\nAttributeEnd\n", !by_rays, emitter, by_rays ? "" : receiver);
         struct estimate e = scaled(mean_luminance(&w.job, draw, &s, by_rays ? 131072 : 4096), factor);
-        check(row, by_rays ? "rays" : "path", e, by_rays ? 2 * GOAL : 12 * GOAL);
+        check(row, by_rays ? "rays" : "path", e, by_rays ? 3 * GOAL : 12 * GOAL);
         if (e.error < best.error)
             best = e;
         world_free(&w);
@@ -95,7 +95,7 @@ static void closure(const struct row *row)
 {
     if (opposed_F.degrees == 0 || adjacent_F.degrees == 0)
         return; // not measured this time
-    check(row, "C1 + 4 C3", (struct estimate){opposed_F.mean + 4 * adjacent_F.mean, hypot(opposed_F.error, 4 * adjacent_F.error), REPLICATES - 1}, GOAL);
+    check(row, "C1 + 4 C3", (struct estimate){opposed_F.mean + 4 * adjacent_F.mean, hypot(opposed_F.error, 4 * adjacent_F.error), REPLICATES - 1}, 2 * GOAL);
 }
 static void disks(const struct row *row)
 {

@@ -59,7 +59,7 @@ static void spot_flux(const struct row *row)
 // the hemisphere is sampled twice, by the meter and by the grey receiver: the second for some of the shapes only
 static const struct effort usual = {.meter = 65536, .path = 2048, .lights = 2048};
 static const struct effort all = {.meter = 65536, .path = 2048, .lights = 2048, .surface = 65536};
-static const struct effort small = {.meter = 131072, .path = 2048, .lights = 2048}; // sources that few rays meet
+static const struct effort small = {.meter = 262144, .path = 2048, .lights = 2048}; // sources that few rays meet
 
 static const char disk_above[] = BLACK GLOW "ReverseOrientation Shape \"disk\" \"float height\" 2 \"float radius\" 1\n";
 
