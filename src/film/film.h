@@ -22,13 +22,19 @@ struct sr_filter_model {
 extern const struct sr_filter_model *const sr_filter_models[]; // ends with NULL
 const struct sr_filter_model *sr_filter_model_find(const char *name);
 
+enum { SR_FILTER_SHARES = 512, SR_FILTER_SIGN_CHANGES = 64 };
+struct sr_filter_axis {
+    float position[SR_FILTER_SHARES + 1]; // [pixel] from the pixel's centre: between two of them lies an equal share of |f|
+    float change[SR_FILTER_SIGN_CHANGES]; // [pixel] where f changes its sign
+    uint32_t sign_changes;
+    bool begins_negative;
+};
 struct sr_filter {
     const struct sr_filter_model *model;
     const void *self;
     sr_vec2 radius;                    // [pixel]
-    const struct sr_piecewise2 *table; // of |value|, on the filter's extent
-    const float *sign_weights;         // one a cell: sign times integral|f| / integral f
-    uint32_t nx, ny;
+    const struct sr_filter_axis *axes; // x and y; NULL: uniform
+    float weight;                      // [1] integral |f| / integral f, as drawn
 };
 sr_status sr_filter_prepare(struct sr_arena *arena, const struct sr_filter_model *model, const void *self, struct sr_filter *out, struct sr_error *error);
 /* Offset from the pixel's centre [pixel]; *weight so that the mean of weight * L is the filtered value. */

@@ -13,7 +13,7 @@ struct sr_worker {
     struct sr_ray_log *log;               // NULL, or where rays are recorded until it is full
 };
 
-/* A sample's numbers come in groups of four: the sensor's two, then two for each bounce. */
+/* A sample's numbers come in groups of four: the sensor's two (one pair, drawn together), then two for each bounce. */
 enum { SR_USE_FILM = 0, SR_USE_LENS = 1, SR_USE_BOUNCE = 2 };
 
 /* What a ray brings, and how wide it is: a sensor ray knows how it changes from pixel to pixel. */

@@ -60,7 +60,7 @@ static sr_spectrum direct(const struct sr_scene *scene, const struct sr_point *x
     float cos_theta_i = sr_abs_cos_theta(wi), pdf_bsdf;
     sr_spectrum f = sr_bsdf_f_pdf(bsdf, wo, wi, SR_RADIANCE, &pdf_bsdf);
     sr_spectrum fL = f * l.L * cos_theta_i;
-    if (!(sr_spectrum_max(fL) > 0) || !sr_unoccluded(scene, x, &l, worker))
+    if (!sr_spectrum_any(fL > 0.0f) || !sr_unoccluded(scene, x, &l, worker))
         return SR_BLACK;
 
     float pdf = pmf * l.pdf;
@@ -77,59 +77,66 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
     float pdf = INFINITY;       // density that chose ray.d                     [1/sr]; infinite: no light sampling could compete
     float eta_scale = 1;        // what refraction has made of beta, and will undo [1]
     bool is_scattered = false;  // by more than mirrors and clear glass
+    bool has_footprints = sr_scene_has_footprints(scene);
     float width = 0;            // of the path at its last surface              [m]
-    float spread = 0.5f * (sr_length(start->dddx) + sr_length(start->dddy)); // [1]
-    struct sr_point from = {0}; // where the path was scattered last
+    float spread = has_footprints ? 0.5f * (sr_length(start->dddx) + sr_length(start->dddy)) : 0; // [1]
+    struct sr_hit hits[2];      // where the path is now, and where it was scattered last
+    struct sr_hit *x = &hits[0], *from = &hits[1];
     int passed = 0;
 
     for (int bounce = 0;;) {
-        struct sr_hit x;
-        if (!sr_trace(scene, &ray, &x, worker)) {
+        if (!sr_trace(scene, &ray, x, worker)) {
             if (first && bounce == 0)
                 *first = (struct sr_hit){.t = INFINITY};
-            return L + beta * escaping(scene, &from, pdf, ray.d, w);
+            return L + beta * escaping(scene, &from->point, pdf, ray.d, w);
         }
         if (first && bounce == 0)
-            *first = x;
+            *first = *x;
 
         // Le(x, wo)
-        if (x.light != SR_NO_LIGHT) {
-            sr_spectrum Le = sr_hit_Le(scene, &x, sr_neg(ray.d), w);
-            if (sr_spectrum_max(Le) > 0)
-                L += beta * Le * weight_of_hit(scene, &from, pdf, ray.d, x.light, &x.point);
+        if (x->light != SR_NO_LIGHT) {
+            sr_spectrum Le = sr_hit_Le(scene, x, sr_neg(ray.d), w);
+            if (sr_spectrum_any(Le > 0.0f))
+                L += beta * Le * weight_of_hit(scene, &from->point, pdf, ray.d, x->light, &x->point);
         }
-        if (!x.material) { // an interface: the path goes on as it was
+        if (!x->material) { // an interface: the path goes on as it was
             if (++passed > 1000)
                 return L;
-            ray = sr_leave(&x.point, ray.d);
+            ray = sr_leave(&x->point, ray.d);
             continue;
         }
         if (bounce == path->max_depth)
             return L;
 
         // what scatters here
-        if (bounce == 0) {
-            sr_first_footprint(start, &x.point);
-            if (first)
-                first->point = x.point;
-        } else if (is_scattered) {
-            sr_seen_footprint(start, &x.point);
-        } else {
-            width += spread * x.t;
-            struct sr_frame tangent = sr_frame_from_z(x.point.n);
-            sr_point_set_footprint(&x.point, sr_scale(width, tangent.x), sr_scale(width, tangent.y));
+        if (has_footprints) {
+            if (bounce == 0) {
+                sr_first_footprint(start, &x->point);
+                if (first)
+                    first->point = x->point;
+                width = 0.5f * (sr_length(x->point.dpdx) + sr_length(x->point.dpdy));
+            } else if (!is_scattered) {
+                width += spread * x->t;
+            }
+            if (x->has_footprint && is_scattered) {
+                sr_seen_footprint(start, &x->point);
+            } else if (x->has_footprint && bounce > 0) {
+                struct sr_frame tangent = sr_frame_from_z(x->point.n);
+                sr_point_set_footprint(&x->point, sr_scale(width, tangent.x), sr_scale(width, tangent.y));
+            }
         }
         worker->vertices += 1;
         uint32_t group = SR_USE_BOUNCE + 2 * (uint32_t)bounce;
-        sr_u4 u_light = sr_sample4(sampler, group), u_bsdf = sr_sample4(sampler, group + 1);
+        sr_u4 u_light, u_bsdf;
+        sr_sample8(sampler, group, &u_light, &u_bsdf);
         struct sr_bsdf bsdf;
         struct sr_frame frame;
         uint32_t seed = sr_hash_combine(sampler->key + sampler->sample, group);
-        sr_material_shade(x.material, &x.point, sr_neg(ray.d), u_bsdf[3], seed, w, &bsdf, &frame);
+        sr_material_shade(x->material, &x->point, sr_neg(ray.d), u_bsdf[3], seed, w, &bsdf, &frame);
         if (!bsdf.model) {
             if (++passed > 1000)
                 return L;
-            ray = sr_leave(&x.point, ray.d);
+            ray = sr_leave(&x->point, ray.d);
             continue;
         }
         sr_vec3 wo = sr_to_local(&frame, sr_neg(ray.d));
@@ -138,7 +145,7 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
 
         // integral f L |cos theta_i| dwi, by the lights
         if (sr_bsdf_lobes(&bsdf) & (SR_LOBE_DIFFUSE | SR_LOBE_GLOSSY))
-            L += beta * direct(scene, &x.point, &frame, &bsdf, wo, u_light, w, worker);
+            L += beta * direct(scene, &x->point, &frame, &bsdf, wo, u_light, w, worker);
 
         // integral f L |cos theta_i| dwi, by the surface: L(x, wi) is the next turn of this loop
         struct sr_bsdf_sample s;
@@ -149,10 +156,10 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
         if (s.lobe & SR_LOBE_TRANSMISSION)
             eta_scale *= s.eta * s.eta;
         is_scattered |= !(s.lobe & SR_LOBE_SPECULAR);
-        if (bounce == 0)
-            width = 0.5f * (sr_length(x.point.dpdx) + sr_length(x.point.dpdy));
-        from = x.point;
-        ray = sr_leave(&from, sr_to_world(&frame, s.wi));
+        ray = sr_leave(&x->point, sr_to_world(&frame, s.wi));
+        struct sr_hit *free = from;
+        from = x;
+        x = free;
         ++bounce;
 
         // a path that carries little ends by lot, and those that survive carry its share

@@ -36,6 +36,9 @@ struct sr_material_model {
 extern const struct sr_material_model *const sr_material_models[]; // ends with NULL
 const struct sr_material_model *sr_material_model_find(const char *name);
 
+/* Whether anything of the material may look at the footprint of a point: a texture that is not constant, or a bump map. */
+bool sr_material_has_footprint(const struct sr_material *material);
+
 /* The BSDF at x and the frame it lives in: applies mix, bump and normal map (which turn x->ns, x->dpdus), then asks the
  * model. out->model NULL: interface. */
 void sr_material_shade(const struct sr_material *material, struct sr_point *x, sr_vec3 wo, float u, uint32_t seed,

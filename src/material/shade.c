@@ -16,6 +16,8 @@
  * In both ns' stays on the side of the geometric normal n. */
 #include "material/private.h"
 
+#include <string.h>
+
 #define MIX_DEPTH 32 // mixes of mixes; named materials refer to earlier ones, so a scene cannot have a circle
 
 static float texel(const struct sr_texels *t, uint32_t x, uint32_t y, uint32_t channel)
@@ -101,6 +103,24 @@ static inline struct sr_frame frame_at(const struct sr_point *x)
     sr_vec3 t = sr_scale(1 / sqrtf(length2), across);
     return (struct sr_frame){
         .x = t, .y = {z.y * t.z - z.z * t.y, z.z * t.x - z.x * t.z, z.x * t.y - z.y * t.x}, .z = z};
+}
+
+bool sr_material_has_footprint(const struct sr_material *material)
+{
+    if (!material || !material->model)
+        return false;
+    if (material->displacement.model || material->model->choose)
+        return true;
+    for (const struct sr_param *p = material->model->params; p && p->name; ++p) {
+        struct sr_texture t = {NULL, NULL};
+        if (p->kind == SR_PARAM_FLOAT_TEXTURE || p->kind == SR_PARAM_ALBEDO_TEXTURE || p->kind == SR_PARAM_UNBOUNDED_TEXTURE)
+            memcpy(&t, (const char *)material->self + p->offset, sizeof t);
+        float number;
+        struct sr_spd spectrum;
+        if (t.model && !sr_texture_is_constant_float(t, &number) && !sr_texture_is_constant_spectrum(t, &spectrum))
+            return true;
+    }
+    return false;
 }
 
 void sr_material_shade(const struct sr_material *material, struct sr_point *x, sr_vec3 wo, float u, uint32_t seed,

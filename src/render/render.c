@@ -57,7 +57,8 @@ static bool sample_pixel(const struct sr_render_job *job, float m[3][3], uint32_
                          float rgb[3], struct sr_first_hit *first, struct sr_worker *worker)
 {
     struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, x, y, replicate, sample);
-    sr_u4 u = sr_sample4(&sampler, SR_USE_FILM), u_lens = sr_sample4(&sampler, SR_USE_LENS);
+    sr_u4 u, u_lens;
+    sr_sample8(&sampler, SR_USE_FILM, &u, &u_lens);
     float weight = 1;
     sr_vec2 offset = job->jitter_pixel ? sr_filter_sample(&job->filter, (sr_vec2){u[0], u[1]}, &weight) : (sr_vec2){0, 0};
     struct sr_wavelengths w = sr_wavelengths_sample(job->lambda, job->jitter_lambda ? u[2] : 0.5f);

@@ -128,6 +128,50 @@ static inline sr_u4 sr_sample4(const struct sr_sampler *s, uint32_t group)
     return sr_bits_to_u4(sr_reverse_bits_u4(x));
 }
 
+/* The numbers of group and of group + 1, exactly as sr_sample4 gives them, for two thirds of the price. */
+static inline void sr_sample8(const struct sr_sampler *s, uint32_t group, sr_u4 *first, sr_u4 *second)
+{
+    if (SR_UNLIKELY(s->kind == SR_SAMPLER_INDEPENDENT || s->sample >> 16)) {
+        *first = sr_sample4(s, group);
+        *second = sr_sample4(s, group + 1);
+        return;
+    }
+    typedef uint64_t sr_wide4 __attribute__((vector_size(32)));
+    typedef uint32_t sr_u8_bits __attribute__((vector_size(32)));
+    typedef int32_t sr_i8 __attribute__((vector_size(32)));
+    typedef float sr_u8 __attribute__((vector_size(32)));
+    typedef uint8_t sr_bytes32 __attribute__((vector_size(32)));
+    uint64_t wide[2] = {(s->key ^ (uint64_t)group << 32) * 0x9e3779b97f4a7c15ull, (s->key ^ (uint64_t)(group + 1) << 32) * 0x9e3779b97f4a7c15ull};
+    uint32_t i0 = (uint32_t)sr_reversed_byte[s->sample & 255] << 8 | sr_reversed_byte[s->sample >> 8 & 255];
+    i0 ^= i0 * 0x3d20adeau;
+    sr_u4_bits points[2];
+    for (int k = 0; k < 2; ++k) {
+        wide[k] = (wide[k] ^ wide[k] >> 32) * 0xd6e8feb86659fd93ull;
+        wide[k] ^= wide[k] >> 32;
+        uint32_t seed = (uint32_t)wide[k], i = (i0 + seed) * (seed >> 16 | 1);
+        i ^= i * 0x05526c56u;
+        i ^= i * 0x53a22864u;
+        points[k] = sr_sobol_table[1][i & 255] ^ sr_sobol_table[0][i >> 8 & 255];
+    }
+    sr_wide4 product = {wide[0] * 0xbf58476d1ce4e5b9ull, wide[0] * 0x94d049bb133111ebull, wide[1] * 0xbf58476d1ce4e5b9ull, wide[1] * 0x94d049bb133111ebull};
+    sr_u8_bits lane = (sr_u8_bits)(product ^ product >> 32);
+    sr_u8_bits x = __builtin_shufflevector(points[0], points[1], 0, 1, 2, 3, 4, 5, 6, 7);
+    x ^= x * 0x3d20adeau;
+    x += lane;
+    x *= lane >> 16 | 1;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    sr_bytes32 b = (sr_bytes32)x;
+    x = (sr_u8_bits)__builtin_shufflevector(b, b, 3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12, 19, 18, 17, 16, 23, 22, 21, 20, 27, 26, 25, 24,
+                                            31, 30, 29, 28);
+    x = (x & 0x0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0fu);
+    x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
+    x = (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
+    sr_u8 u = __builtin_convertvector((sr_i8)(x >> 8), sr_u8) * 0x1p-24f;
+    *first = __builtin_shufflevector(u, u, 0, 1, 2, 3);
+    *second = __builtin_shufflevector(u, u, 4, 5, 6, 7);
+}
+
 /* ---- warps: uniform numbers to shapes, with densities ---- */
 
 /* Sine and cosine of x in -pi/4 … pi/4 [rad], by Taylor's series: off by less than 1e-7, the sine relative to itself. */
@@ -149,16 +193,33 @@ static inline void sr_sin_cos_turn(float turn, float *s, float *c)
     *s = quarter & 2 ? -b : b;
 }
 
-sr_vec2 sr_warp_disk(sr_vec2 u);                // concentric (Shirley & Chiu 1997), pdf 1/pi
+static inline sr_vec2 sr_warp_disk(sr_vec2 u)   // concentric (Shirley & Chiu 1997), pdf 1/pi
+{
+    float a = 2 * u.x - 1, b = 2 * u.y - 1, s, c;
+    bool wide = fabsf(a) > fabsf(b);
+    float r = wide ? a : b, across = wide ? b : a;
+    sr_sin_cos_eighth(SR_PI / 4 * (across / (r != 0 ? r : 1)), &s, &c);
+    float x = r * c, y = r * s;
+    return wide ? (sr_vec2){x, y} : (sr_vec2){y, x};
+}
 sr_vec3 sr_warp_uniform_sphere(sr_vec2 u);      // pdf 1/(4 pi) sr^-1
 sr_vec3 sr_warp_uniform_hemisphere(sr_vec2 u);  // pdf 1/(2 pi) sr^-1
-sr_vec3 sr_warp_cosine_hemisphere(sr_vec2 u);   // pdf cos/pi sr^-1
+static inline sr_vec3 sr_warp_cosine_hemisphere(sr_vec2 u) // over the disk (Malley), pdf cos/pi sr^-1
+{
+    sr_vec2 d = sr_warp_disk(u);
+    return (sr_vec3){d.x, d.y, sr_safe_sqrt(1 - d.x * d.x - d.y * d.y)};
+}
 static inline float sr_warp_cosine_hemisphere_pdf(float cos_theta)
 {
     return cos_theta > 0 ? cos_theta * SR_INV_PI : 0;
 }
 sr_vec3 sr_warp_uniform_cone(sr_vec2 u, float one_minus_cos_max); // around +z, pdf 1/(2 pi (1 - cos)) sr^-1
-sr_vec2 sr_warp_triangle(sr_vec2 u);            // barycentrics of vertices 0 and 1 (Heitz 2019), uniform by area
+static inline sr_vec2 sr_warp_triangle(sr_vec2 u) // barycentrics of vertices 0 and 1 (Heitz 2019), uniform by area
+{
+    bool upper = u.y > u.x;
+    float half = 0.5f * (upper ? u.x : u.y), rest = (upper ? u.y : u.x) - half; // no branch to mispredict
+    return (sr_vec2){upper ? half : rest, upper ? rest : half};
+}
 float sr_warp_exponential(float u, float a);    // density a exp(-a x)
 /* Bilinear density on the unit square with corner weights w[0]=(0,0), w[1]=(1,0), w[2]=(0,1), w[3]=(1,1). */
 sr_vec2 sr_warp_bilinear(sr_vec2 u, const float w[4]);

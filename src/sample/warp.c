@@ -1,23 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Warps of the unit square to disks, spheres, cones, triangles and simple densities.
+/* Warps of the unit square to spheres, cones and simple densities (those of the innermost loop are in sample.h).
  *
- *     disk: r = a, phi = pi/4 b/a (concentric);   sphere: z = 1 - 2 u;   cone: 1 - z = u (1 - cos_max)
- *     cosine hemisphere: z = sqrt(1 - r^2) over the disk (Malley);   exponential: x = -log(1 - u) / a
- *
- * P. Shirley & K. Chiu, A Low Distortion Map Between Disk and Square, 1997; E. Heitz, A Low-Distortion Map Between
- * Triangle and Square, 2019. */
+ *     sphere: z = 1 - 2 u;   cone: 1 - z = u (1 - cos_max);   exponential: x = -log(1 - u) / a */
 #include "sample/sample.h"
-
-sr_vec2 sr_warp_disk(sr_vec2 u)
-{
-    float a = 2 * u.x - 1, b = 2 * u.y - 1, s, c;
-    bool wide = fabsf(a) > fabsf(b);
-    float r = wide ? a : b, across = wide ? b : a;
-    if (r == 0)
-        return (sr_vec2){0, 0};
-    sr_sin_cos_eighth(SR_PI / 4 * (across / r), &s, &c);
-    return wide ? (sr_vec2){r * c, r * s} : (sr_vec2){r * s, r * c};
-}
 
 sr_vec3 sr_warp_uniform_sphere(sr_vec2 u)
 {
@@ -33,25 +18,12 @@ sr_vec3 sr_warp_uniform_hemisphere(sr_vec2 u)
     return (sr_vec3){sin_theta * c, sin_theta * s, u.x};
 }
 
-sr_vec3 sr_warp_cosine_hemisphere(sr_vec2 u)
-{
-    sr_vec2 d = sr_warp_disk(u);
-    return (sr_vec3){d.x, d.y, sr_safe_sqrt(1 - d.x * d.x - d.y * d.y)};
-}
-
 sr_vec3 sr_warp_uniform_cone(sr_vec2 u, float one_minus_cos_max)
 {
     float s, c, one_minus_cos = u.x * one_minus_cos_max;
     float sin_theta = sr_safe_sqrt(one_minus_cos * (2 - one_minus_cos));
     sr_sin_cos_turn(u.y, &s, &c);
     return (sr_vec3){sin_theta * c, sin_theta * s, 1 - one_minus_cos};
-}
-
-sr_vec2 sr_warp_triangle(sr_vec2 u)
-{
-    if (u.y > u.x)
-        return (sr_vec2){0.5f * u.x, u.y - 0.5f * u.x};
-    return (sr_vec2){u.x - 0.5f * u.y, 0.5f * u.y};
 }
 
 float sr_warp_exponential(float u, float a)

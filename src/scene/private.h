@@ -15,6 +15,7 @@ struct placed_shape {
     uint32_t first_light;     // SR_NO_LIGHT: dark
     uint32_t number;          // from 1, in the order of description
     uint32_t material_number; // from 1; 0: interface
+    bool has_footprint;       // its material looks at footprints
     bool is_mesh;             // of triangles, which Embree meets itself
 };
 
@@ -34,7 +35,7 @@ struct instance {
 struct sr_scene {
     struct sr_arena arena;
     struct sr_error error;
-    bool is_finished;
+    bool is_finished, has_footprints;
     struct sr_array objects;        // struct object *
     struct sr_array instance_defs;  // struct instance_def
     struct sr_array light_defs;     // struct sr_light

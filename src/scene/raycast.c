@@ -57,6 +57,7 @@ bool sr_raycast(const struct sr_scene *scene, const struct sr_ray *ray, struct s
     hit->light = s->first_light == SR_NO_LIGHT ? SR_NO_LIGHT : s->first_light + rh.hit.primID;
     hit->object = s->number;
     hit->material_number = s->material_number;
+    hit->has_footprint = s->has_footprint;
     return true;
 }
 

@@ -157,7 +157,8 @@ static void place_shapes(struct sr_scene *scene, struct object *object, bool is_
         object->shapes[object->shape_count++] = (struct placed_shape){
             .shape = def->shape, .material = material_number ? def->material : NULL, .first_light = first_light, .number = number,
             .alpha = def->alpha.model && !(sr_texture_is_constant_float(def->alpha, &alpha) && alpha >= 1) ? def->alpha : (struct sr_texture){0},
-            .material_number = material_number, .is_mesh = is_mesh};
+            .material_number = material_number, .has_footprint = material_number && sr_material_has_footprint(def->material), .is_mesh = is_mesh};
+        scene->has_footprints |= object->shapes[object->shape_count - 1].has_footprint;
     }
     sr_array_free(&object->defs);
 }
@@ -200,6 +201,11 @@ sr_status sr_scene_finish(struct sr_scene *scene, int threads, enum sr_light_cho
     scene->counts.build_s = sr_clock_s() - start_s;
     scene->is_finished = scene->error.status == SR_OK;
     return scene->error.status;
+}
+
+bool sr_scene_has_footprints(const struct sr_scene *scene)
+{
+    return scene->has_footprints;
 }
 
 const struct sr_lights *sr_scene_lights(const struct sr_scene *scene)

@@ -45,6 +45,7 @@ struct sr_hit {
     uint32_t light;                     // index of the area light here, or SR_NO_LIGHT
     uint32_t object;                    // number of the shape, from 1
     uint32_t material_number;           // from 1; 0: interface
+    bool has_footprint;                 // its material looks at the point's footprint
 };
 #define SR_NO_LIGHT UINT32_MAX
 
@@ -77,6 +78,7 @@ struct sr_ray_log {
 uint64_t sr_scene_replay(const struct sr_scene *scene, const struct sr_ray_log *log);
 
 const struct sr_lights *sr_scene_lights(const struct sr_scene *scene);
+bool sr_scene_has_footprints(const struct sr_scene *scene); // whether any material looks at them
 struct sr_box sr_scene_bounds(const struct sr_scene *scene);
 
 struct sr_scene_counts {

@@ -24,34 +24,38 @@ static inline sr_spectrum sr_spectrum_select(sr_spectrum_int mask, sr_spectrum a
 {
     return (sr_spectrum)((mask & (sr_spectrum_int)a) | (~mask & (sr_spectrum_int)b));
 }
+/* In pairs, so that no step waits for all before it. */
 static inline float sr_spectrum_max(sr_spectrum s)
 {
-    float m = s[0];
-    for (int i = 1; i < SR_LAMBDA_COUNT; ++i)
-        m = s[i] > m ? s[i] : m;
-    return m;
+    for (int n = SR_LAMBDA_COUNT / 2; n > 0; n /= 2)
+        for (int i = 0; i < n; ++i)
+            s[i] = s[i] > s[i + n] ? s[i] : s[i + n];
+    return s[0];
 }
 static inline float sr_spectrum_mean(sr_spectrum s)
 {
-    float sum = 0;
-    for (int i = 0; i < SR_LAMBDA_COUNT; ++i)
-        sum += s[i];
-    return sum / SR_LAMBDA_COUNT;
+    for (int n = SR_LAMBDA_COUNT / 2; n > 0; n /= 2)
+        for (int i = 0; i < n; ++i)
+            s[i] += s[i + n];
+    return s[0] * (1.0f / SR_LAMBDA_COUNT);
+}
+/* Whether the mask (of a comparison) is true for any component. */
+static inline bool sr_spectrum_any(sr_spectrum_int mask)
+{
+    typedef uint64_t words __attribute__((vector_size(sizeof(sr_spectrum_int))));
+    words w = (words)mask;
+    uint64_t any = 0;
+    for (int i = 0; i < SR_LAMBDA_COUNT / 2; ++i)
+        any |= w[i];
+    return any != 0;
 }
 static inline bool sr_spectrum_is_black(sr_spectrum s)
 {
-    for (int i = 0; i < SR_LAMBDA_COUNT; ++i)
-        if (s[i] != 0)
-            return false;
-    return true;
+    return !sr_spectrum_any(s != 0.0f);
 }
 static inline bool sr_spectrum_is_finite(sr_spectrum s)
 {
-    sr_spectrum zero = s - s; // NaN where s is not finite
-    float sum = 0;
-    for (int i = 0; i < SR_LAMBDA_COUNT; ++i)
-        sum += zero[i];
-    return sum == 0;
+    return !sr_spectrum_any(s - s != 0.0f); // NaN where s is not finite
 }
 static inline sr_spectrum sr_spectrum_sqrt(sr_spectrum s)
 {
