@@ -188,7 +188,7 @@ TEST(error_bars_of_ordinary_images_are_wide_enough_and_not_too_wide)
     for (int i = 0; i < SCENES; ++i)
         for (int k = 0; k < 3; ++k) {
             struct world w = world_of("%s", scenes[i].text);
-            struct trials t = render_many(w.job, seeds_of(k == 2 ? 60 : 120), spp[k], 0);
+            struct trials t = render_many(w.job, seeds_of(k == 2 ? 40 : 120), spp[k], 0);
             struct verdict v = judge(&t, NULL, 1.96);
             printf("  %-8s %5u %8.0f %8.2f%% %7.2f%% %7.2f%% %8.2f %8.2f\n", scenes[i].name, spp[k], v.trials, 100 * v.coverage, 100 * v.low,
                    100 * v.high, v.ratio, v.ratio_of_means);
@@ -207,7 +207,7 @@ TEST(what_replicates_cost_is_known)
         printf("  %-8s", scenes[i].name);
         for (int k = 0; k < 3; ++k) {
             struct world w = world_of("%s", scenes[i].text);
-            struct trials one = render_many(w.job, seeds_of(30), spp[k], 0), many = render_many(w.job, seeds_of(30), spp[k], 16);
+            struct trials one = render_many(w.job, seeds_of(16), spp[k], 0), many = render_many(w.job, seeds_of(16), spp[k], 16);
             double ratio = judge(&many, NULL, 2).variance / judge(&one, NULL, 2).variance;
             printf(" %8.2f", ratio);
             EXPECT(ratio > 0.5 && ratio < 64); // nets are no worse than their parts

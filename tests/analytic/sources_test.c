@@ -78,7 +78,7 @@ static void sphere_at(const struct row *row, double distance, double tilt, doubl
 
 static void sphere(const struct row *row)
 {
-    sphere_at(row, row->a, row->b, 1, small);
+    sphere_at(row, row->a, row->b, 1, row->b == 90 ? (struct effort){.meter = 524288, .path = 2048, .lights = 2048} : small);
 }
 
 static void cap(const struct row *row)
@@ -103,7 +103,7 @@ static const char triangle_text[] = BLACK GLOW_BOTH "Shape \"trianglemesh\" \"po
 
 static void triangle(const struct row *row)
 {
-    check_irradiance(row, origin, up, triangle_text, all, 1);
+    check_irradiance(row, origin, up, triangle_text, usual, 1);
 }
 
 /* The light vector: its components are differences of the irradiances of the two sides. */
