@@ -93,6 +93,8 @@ static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u
     if (!(r > 0))
         return false;
     sr_vec3 wi = sr_scale(1 / r, d);
+    if (!m->emission->two_sided && sr_dot(x.n, wi) >= 0) // seen from behind: no spectrum is needed to know
+        return false;
     *s = (struct sr_light_sample){.L = radiance(m->emission, x.n, x.uv, sr_neg(wi), w), .wi = wi, .distance = r, .p = x.p,
                                   .p_error = x.p_error, .n = x.n, .pdf = x.pdf, .is_delta = m->is_ghost};
     return !sr_spectrum_is_black(s->L);

@@ -108,26 +108,39 @@ static inline v8 importance(const struct sr_light_tree_node *b, sr_vec3 p, sr_ve
     return select(can_reach, weight, zero);
 }
 
-// sums[k]: of the weights up to and with child k; in double, so that what a child gets is what its probability says
+typedef double v4d __attribute__((vector_size(32)));
+typedef int64_t v4l __attribute__((vector_size(32)));
+
+// of the weights of the first and the last four children: each, and the sums up to and with each; in double, so that what a
+// child gets is what its probability says
 struct sums {
-    double one[WIDTH], upto[WIDTH];
+    v4d one[2], upto[2];
 };
+
+static inline v4d add_up_four(v4d a)
+{
+    const v4d zero = {0};
+    a += __builtin_shufflevector(zero, a, 0, 4, 5, 6);
+    return a + __builtin_shufflevector(zero, a, 0, 1, 4, 5);
+}
 
 static inline struct sums add_up(v8 w)
 {
     struct sums s;
-    for (int i = 0; i < WIDTH; ++i)
-        s.one[i] = (double)w[i];
-    double two = s.one[0] + s.one[1], four = two + (s.one[2] + s.one[3]), six = four + (s.one[4] + s.one[5]);
-    s.upto[0] = s.one[0];
-    s.upto[1] = two;
-    s.upto[2] = two + s.one[2];
-    s.upto[3] = four;
-    s.upto[4] = four + s.one[4];
-    s.upto[5] = six;
-    s.upto[6] = six + s.one[6];
-    s.upto[7] = six + (s.one[6] + s.one[7]);
+    s.one[0] = __builtin_convertvector(__builtin_shufflevector(w, w, 0, 1, 2, 3), v4d);
+    s.one[1] = __builtin_convertvector(__builtin_shufflevector(w, w, 4, 5, 6, 7), v4d);
+    s.upto[0] = add_up_four(s.one[0]);
+    s.upto[1] = add_up_four(s.one[1]) + s.upto[0][3];
     return s;
+}
+
+// the number of sums that t has reached, but for the last
+static inline unsigned count_reached(const struct sums *s, double t)
+{
+    v4l reached = (s->upto[0] <= t) + (s->upto[1] <= t); // -1 for each
+    reached += __builtin_shufflevector(reached, reached, 2, 3, 0, 1);
+    unsigned n = (unsigned)-(reached[0] + reached[1]);
+    return n < WIDTH - 1 ? n : WIDTH - 1;
 }
 
 static bool has_length(sr_vec3 n)
@@ -140,25 +153,26 @@ bool sr_light_tree_pick(const struct sr_light_tree *tree, sr_vec3 p, sr_vec3 ns,
     bool has_normal = has_length(ns);
     float probability = 1;
     uint32_t at = 0;
-    do {
+    for (;;) {
         const struct sr_light_tree_node *node = &tree->nodes[at];
         struct sums s = add_up(importance(node, p, ns, has_normal));
-        double all = s.upto[WIDTH - 1], t = u * all;
+        const double *one = (const double *)s.one, *upto = (const double *)s.upto;
+        double all = s.upto[1][3], t = u * all;
         if (!(all > 0))
             return false;
-        unsigned i = 0; // counted, since branches would be mispredicted
-        for (int k = 0; k < WIDTH - 1; ++k)
-            i += t >= s.upto[k];
-        while (SR_UNLIKELY(!(s.one[i] > 0))) // rounding led past the last
+        unsigned i = count_reached(&s, t); // counted, since branches would be mispredicted
+        while (SR_UNLIKELY(!(one[i] > 0))) // rounding led past the last
             --i;
-        u = (t - (s.upto[i] - s.one[i])) / s.one[i];
+        probability *= (float)(one[i] / all);
+        if (node->child[i] & SR_LIGHT_TREE_LEAF) { // nothing is left to choose
+            *index = node->child[i] & ~SR_LIGHT_TREE_LEAF;
+            *pmf = probability;
+            return probability > 0;
+        }
+        u = (t - (upto[i] - one[i])) / one[i];
         u = u < 0 ? 0 : u < 0x1.fffffffffffffp-1 ? u : 0x1.fffffffffffffp-1;
-        probability *= (float)(s.one[i] / all);
         at = node->child[i];
-    } while (!(at & SR_LIGHT_TREE_LEAF));
-    *index = at & ~SR_LIGHT_TREE_LEAF;
-    *pmf = probability;
-    return probability > 0;
+    }
 }
 
 float sr_light_tree_pmf(const struct sr_light_tree *tree, sr_vec3 p, sr_vec3 ns, uint32_t place)
@@ -168,9 +182,10 @@ float sr_light_tree_pmf(const struct sr_light_tree *tree, sr_vec3 p, sr_vec3 ns,
     while (place != SR_LIGHT_TREE_NOWHERE) {
         const struct sr_light_tree_node *node = &tree->nodes[place / WIDTH];
         struct sums s = add_up(importance(node, p, ns, has_normal));
-        if (!(s.one[place % WIDTH] > 0))
+        double one = ((const double *)s.one)[place % WIDTH];
+        if (!(one > 0))
             return 0;
-        probability *= (float)(s.one[place % WIDTH] / s.upto[WIDTH - 1]);
+        probability *= (float)(one / s.upto[1][3]);
         place = node->parent;
     }
     return probability;

@@ -233,7 +233,7 @@ static inline sr_vec3 sr_point_offset(const struct sr_point *x, sr_vec3 w)
     // away from p by at least one more ulp, so that rounding never brings it back
     float *c = &o.x, *s = &offset.x;
     for (int i = 0; i < 3; ++i)
-        c[i] += s[i] != 0 ? copysignf(fabsf(c[i]) * 0x1p-23f + 0x1p-126f, s[i]) : 0;
+        c[i] += copysignf(fabsf(c[i]) * 0x1p-23f + 0x1p-126f, s[i]);
     return o;
 }
 

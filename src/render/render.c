@@ -53,12 +53,11 @@ static void first_albedo(const struct sr_render_job *job, struct sr_hit *hit, sr
     albedo[0] = rgb.r, albedo[1] = rgb.g, albedo[2] = rgb.b;
 }
 
-static bool sample_pixel(const struct sr_render_job *job, float m[3][3], uint32_t x, uint32_t y, uint32_t replicate, uint32_t sample,
+static bool sample_pixel(const struct sr_render_job *job, float m[3][3], uint32_t x, uint32_t y, const struct sr_sampler *sampler,
                          float rgb[3], struct sr_first_hit *first, struct sr_worker *worker)
 {
-    struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, x, y, replicate, sample);
     sr_u4 u, u_lens;
-    sr_sample8(&sampler, SR_USE_FILM, &u, &u_lens);
+    sr_sample8(sampler, SR_USE_FILM, &u, &u_lens);
     float weight = 1;
     sr_vec2 offset = job->jitter_pixel ? sr_filter_sample(&job->filter, (sr_vec2){u[0], u[1]}, &weight) : (sr_vec2){0, 0};
     struct sr_wavelengths w = sr_wavelengths_sample(job->lambda, job->jitter_lambda ? u[2] : 0.5f);
@@ -73,7 +72,7 @@ static bool sample_pixel(const struct sr_render_job *job, float m[3][3], uint32_
     float share = job->jitter_pixel ? 0.125f : 1;
     struct sr_path_start start = {view.ray, sr_scale(share, view.dodx), sr_scale(share, view.dody), sr_scale(share, view.dddx), sr_scale(share, view.dddy)};
     struct sr_hit hit;
-    sr_spectrum L = job->integrator.model->L(job->integrator.self, job->scene, &start, &sampler, &w, first ? &hit : NULL, worker);
+    sr_spectrum L = job->integrator.model->L(job->integrator.self, job->scene, &start, sampler, &w, first ? &hit : NULL, worker);
     struct sr_xyz xyz = sr_spectrum_to_xyz(L, &w);
     weight *= view.weight;
     for (int c = 0; c < 3; ++c)
@@ -93,7 +92,7 @@ static bool sample_pixel(const struct sr_render_job *job, float m[3][3], uint32_
             first->uv = hit.point.uv;
             first->material = hit.material_number;
             first->object = hit.object;
-            first_albedo(job, &hit, view.ray.d, &sampler, &w, first->albedo);
+            first_albedo(job, &hit, view.ray.d, sampler, &w, first->albedo);
         }
     }
     return isfinite(rgb[0]) && isfinite(rgb[1]) && isfinite(rgb[2]);
@@ -104,7 +103,8 @@ bool sr_render_sample(const struct sr_render_job *job, uint32_t x, uint32_t y, u
 {
     float m[3][3];
     sr_film_response(&job->film, m);
-    return sample_pixel(job, m, x, y, replicate, sample, rgb, first, worker);
+    struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, x, y, replicate, sample);
+    return sample_pixel(job, m, x, y, &sampler, rgb, first, worker);
 }
 
 /* ---- one unit: a tile times a block ---- */
@@ -140,10 +140,12 @@ static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, 
     uint32_t replicate = job->replicates ? block : 0;
     uint32_t begin = job->replicates ? 0 : (uint32_t)((uint64_t)job->spp * block / run->blocks);
     uint32_t end = job->replicates ? (uint32_t)per_replicate : (uint32_t)((uint64_t)job->spp * (block + 1) / run->blocks);
+    struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, x, y, replicate, begin);
     for (uint32_t i = begin; i < end; ++i) {
+        sampler.sample = i;
         float rgb[3];
         struct sr_first_hit first;
-        bool is_finite = sample_pixel(job, run->rgb_from_xyz, x, y, replicate, i, rgb, job->with_aov ? &first : NULL, worker);
+        bool is_finite = sample_pixel(job, run->rgb_from_xyz, x, y, &sampler, rgb, job->with_aov ? &first : NULL, worker);
         if (SR_UNLIKELY(!is_finite))
             remember_dropped(run, x, y, replicate, i);
         sr_film_block_add(b, rgb, is_finite);

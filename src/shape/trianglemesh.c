@@ -221,6 +221,20 @@ static void corner_weights(const struct sr_point *reference, const sr_vec3 v[3],
     w[3] = k[2];
 }
 
+/* The normal by the winding, and the area [m^2], of one vector product. */
+static inline sr_vec3 normal_and_area(const sr_vec3 v[3], float *area)
+{
+    sr_vec3 c = sr_cross(sr_sub(v[0], v[2]), sr_sub(v[1], v[2]));
+    float l2 = sr_dot(c, c);
+    if (SR_LIKELY(l2 > 1e-30f && l2 < 1e30f)) {
+        float l = sqrtf(l2);
+        *area = 0.5f * l;
+        return sr_scale(1 / l, c);
+    }
+    *area = (float)(0.5 * sqrt((double)c.x * (double)c.x + (double)c.y * (double)c.y + (double)c.z * (double)c.z));
+    return sr_unit_normal(c);
+}
+
 static bool sample(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec2 u,
                    struct sr_shape_sample *s)
 {
@@ -228,8 +242,8 @@ static bool sample(const void *self, uint32_t primitive, const struct sr_point *
     const int32_t *c = corners(m, primitive);
     sr_vec3 v[3];
     vertices(m, primitive, v);
-    float b[3], pdf;
-    float solid_angle;
+    float b[3], pdf, a, solid_angle;
+    sr_vec3 n = normal_and_area(v, &a);
     bool is_spherical = reference && by_solid_angle(v, reference->p, &solid_angle);
     if (is_spherical) {
         float pdf_warp = 1;
@@ -242,7 +256,6 @@ static bool sample(const void *self, uint32_t primitive, const struct sr_point *
         sr_spherical_triangle_sample(v, reference->p, u, b, &pdf);
         pdf *= pdf_warp;
     } else {
-        float a = area(self, primitive);
         if (!(a > 0))
             return false;
         pdf = 1 / a;
@@ -251,7 +264,6 @@ static bool sample(const void *self, uint32_t primitive, const struct sr_point *
         b[1] = t.y;
         b[2] = 1 - t.x - t.y;
     }
-    sr_vec3 n = sr_unit_normal(sr_cross(sr_sub(v[0], v[2]), sr_sub(v[1], v[2])));
     s->p = sr_add(sr_add(sr_scale(b[0], v[0]), sr_scale(b[1], v[1])), sr_scale(b[2], v[2]));
     s->p_error = error_bound(v, b[0], b[1], b[2]);
     s->n = outside(m, c, n, b[0], b[1], b[2]);
@@ -267,7 +279,8 @@ static float pdf(const void *self, uint32_t primitive, const struct sr_point *re
     vertices(self, primitive, v);
     float solid_angle;
     if (!by_solid_angle(v, reference->p, &solid_angle)) {
-        float a = area(self, primitive);
+        float a;
+        normal_and_area(v, &a);
         return a > 0 ? sr_density_seen_from(reference->p, there->p, there->n, 1 / a) : 0;
     }
     float pdf_warp = 1;
