@@ -21,6 +21,10 @@ struct sr_path_start {
     struct sr_ray ray;
     sr_vec3 dodx, dody; // [m]
     sr_vec3 dddx, dddy; // [1]
+    /* NULL: a sensor ray. Or where lights have been sampled as well: light that the ray meets is then weighed by pdf, the
+     * density that chose its direction [1/sr]. Only for integrators that say so. */
+    const struct sr_point *receiver;
+    float pdf;
 };
 
 struct sr_integrator_model {
@@ -31,6 +35,7 @@ struct sr_integrator_model {
      * is none, and t is infinite. */
     sr_spectrum (*L)(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
                      struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker);
+    bool knows_receivers; // weighs what a ray from start->receiver meets
 };
 extern const struct sr_integrator_model *const sr_integrator_models[]; // ends with NULL
 const struct sr_integrator_model *sr_integrator_model_find(const char *name);

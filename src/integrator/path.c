@@ -83,6 +83,10 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
     struct sr_hit hits[2];      // where the path is now, and where it was scattered last
     struct sr_hit *x = &hits[0], *from = &hits[1];
     int passed = 0;
+    if (start->receiver) {
+        from->point = *start->receiver;
+        pdf = start->pdf;
+    }
 
     for (int bounce = 0;;) {
         if (!sr_trace(scene, &ray, x, worker)) {
@@ -175,4 +179,4 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
     }
 }
 
-const struct sr_integrator_model sr_integrator_path = {.name = "path", .params = params, .size = sizeof(struct path), .L = path_L};
+const struct sr_integrator_model sr_integrator_path = {.name = "path", .params = params, .size = sizeof(struct path), .L = path_L, .knows_receivers = true};

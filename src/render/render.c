@@ -70,7 +70,8 @@ static bool sample_pixel(const struct sr_render_job *job, float m[3][3], uint32_
     // jittered samples smooth a pixel themselves, so that textures need little filtering. pbrt's share at 64 samples and
     // more; the same at any count, or the picture's expectation would depend on it (bump maps: by a factor of 2)
     float share = job->jitter_pixel ? 0.125f : 1;
-    struct sr_path_start start = {view.ray, sr_scale(share, view.dodx), sr_scale(share, view.dody), sr_scale(share, view.dddx), sr_scale(share, view.dddy)};
+    struct sr_path_start start = {.ray = view.ray, .dodx = sr_scale(share, view.dodx), .dody = sr_scale(share, view.dody),
+                                  .dddx = sr_scale(share, view.dddx), .dddy = sr_scale(share, view.dddy)};
     struct sr_hit hit;
     sr_spectrum L = job->integrator.model->L(job->integrator.self, job->scene, &start, sampler, &w, first ? &hit : NULL, worker);
     struct sr_xyz xyz = sr_spectrum_to_xyz(L, &w);

@@ -52,7 +52,8 @@ double z_of(struct estimate e, double value)
 void check(const struct row *row, const char *how, struct estimate e, double goal)
 {
     double z = z_of(e, row->value), relative = e.mean / row->value - 1, relative_error = e.error / fabs(row->value);
-    bool is_right = fabs(z) < 4.9 || fabs(relative) <= FLOAT_GOAL;
+    // a slow build takes few samples, too few for a tail of a distribution: it looks for faults of memory
+    bool is_right = fabs(z) < (is_slow_build() ? 10 : 4.9) || fabs(relative) <= FLOAT_GOAL;
     bool is_sharp = is_slow_build() || relative_error <= goal / sqrt(fmax(1, fmin(effort(), goal * goal / (GOAL * GOAL))));
     printf("  %-12s %-10s %-16.12g %-16.10g +- %-9.2e %+9.2e %7.2f %s%s\n", row->id, how, row->value, e.mean, e.error, relative, z,
            is_right ? "" : "WRONG ", is_sharp ? "" : "NOT SHARP");

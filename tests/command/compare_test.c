@@ -196,7 +196,7 @@ TEST(info_tells_pictures_and_scenes)
     json_decref(j);
     s = run_expecting(0, "info " CORNELL);
     EXPECT_SAYS(s->out, "perspective");
-    EXPECT_SAYS(s->out, "16 patches");
+    EXPECT_SAYS(s->out, "30 triangles, 1 patches");
     EXPECT_SAYS(s->out, "360 to 830 nm");
     j = json_of(run_expecting(0, "info " CORNELL " --json"));
     EXPECT_EQUAL_TEXT(json_string_value(json_object_get(json_object_get(j, "bounds"), "unit")), "m");

@@ -110,7 +110,7 @@ TEST(render_and_info_read_standard_input)
     sr_image_free(b);
     s = run("info - --json", CORNELL);
     json_t *j = json_of(s);
-    EXPECT_NEAR(number_at(j, "counts", "patches"), 16, 0);
+    EXPECT_NEAR(number_at(j, "counts", "triangles"), 30, 0);
     json_decref(j);
 }
 
