@@ -162,7 +162,7 @@ void sr_film_pixel_error(const struct sr_film *film, uint32_t x, uint32_t y, boo
                 }
             }
         // the neighbours steady the estimate; a pixel that is seen to vary more than they do keeps its own
-        standard_error[c] = count ? sqrt(fmax(sum / count, isfinite(own) ? own : 0)) : NAN;
+        standard_error[c] = count > 0 ? sqrt(fmax(sum / count, isfinite(own) ? own : 0)) : NAN;
     }
 }
 
