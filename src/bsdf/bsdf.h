@@ -23,34 +23,67 @@ enum {
 
 struct sr_bsdf_sample {
     sr_vec3 wi;
-    sr_spectrum f;    // [1/sr]; for delta lobes f / pdf * |cos_theta_i| is the weight
-    float pdf;        // [1/sr]; for delta lobes the probability of the lobe
-    float eta;        // [1] relative index on the path's way if the sample is a transmission into another medium, else 1
-    uint32_t lobe;    // SR_LOBE_* of what was drawn
+    sr_spectrum f; // [1/sr]; for delta lobes f / pdf * |cos_theta_i| is the weight
+    float pdf;     // [1/sr]; for delta lobes the probability of the lobe
+    float eta;     // [1] relative index on the path's way if the sample is a transmission into another medium, else 1
+    uint32_t lobe; // SR_LOBE_* of what was drawn
     bool pdf_is_proportional; // f and pdf share an unknown factor (random walks): use pdf() for weighing
 };
 
-#define SR_BSDF_SIZE (128 + 16 * SR_LAMBDA_COUNT) // [B] of the largest model's data: 256 for 8 wavelengths
+#define SR_BSDF_SIZE (128 + 48 * SR_LAMBDA_COUNT) // [B] of the largest model's data: 512 for 8 wavelengths
 
+/* What a model may want to know of the path, besides its parameters. */
+struct sr_bsdf_at {
+    sr_spectrum lambda; // [nm]
+    uint32_t seed;      // of this vertex: f of a random walk
+};
+
+/* A model is one file. Its table is all that scene files, laboratory, documents and tests know of its parameters; the kinds
+ * are FLOAT (float), INT and ENUM (int32_t), BOOL (bool), FILE (const char *), ALBEDO and UNBOUNDED (sr_spectrum, already at
+ * the path's wavelengths). Every parameter has a finite default inside its range. */
 struct sr_bsdf_model {
-    const char *name;
-    const struct sr_param *params; // of the plain struct below, for laboratory, docs and tests: floats, ALBEDO and
-                                   // UNBOUNDED rows are sr_spectrum members here (already at the path's wavelengths)
-    size_t size;                   // <= SR_BSDF_SIZE
+    const char *name;   // hapke: the word of scene files and of the laboratory
+    const char *title;  // "Hapke 1981, with roughness"
+    const char *source; // "B. Hapke, Bidirectional reflectance spectroscopy, 1981, eq. 16"; NULL: see the file's head
+    const char *limits; // one sentence: where the model must not be trusted; NULL: nowhere
+    const struct sr_param *params;
+    size_t size; // <= SR_BSDF_SIZE
+    /* Once for a material, when its FILE members are known: reads files, fills in pointers to what lasts as long as the
+     * arena. Sees the numbers of INT, ENUM, BOOL and FILE rows only. NULL: nothing to do. */
+    sr_status (*load)(void *self, struct sr_arena *arena, struct sr_error *error);
+    /* At each hit, when the table's members are filled in, before any other call: what follows from them and is needed
+     * often. Parameters that a texture has driven out of their range are in it again. NULL: nothing to do. */
+    void (*ready)(void *self, const struct sr_bsdf_at *at);
     uint32_t (*lobes)(const void *self);
     sr_spectrum (*f)(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode);
     float (*pdf)(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode);
-    bool (*sample)(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode, struct sr_bsdf_sample *s);
+    bool (*sample)(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode,
+                   struct sr_bsdf_sample *s);
     /* f and pdf at once, where sharing work pays; NULL: the two are called. Must equal them bit for bit. */
     sr_spectrum (*f_pdf)(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *pdf);
     /* directional albedo E(wo) per wavelength, in the form for importance, where a closed form is known; NULL, or NaN for
      * these parameters: nobody knows one. */
     sr_spectrum (*albedo)(const void *self, sr_vec3 wo);
-    bool is_random;  // f is itself an unbiased estimate: it depends on a seed in the data (for some parameters; pdf is a
-                     // plain function, but where sample says pdf_is_proportional it serves for weighing only)
-    bool not_reciprocal;
+    bool is_random; // f is itself an unbiased estimate: it depends on a seed in the data (for some parameters; pdf is a
+                    // plain function, but where sample says pdf_is_proportional it serves for weighing only)
+    /* What a model breaks by its nature, as documented amounts that a certificate measures against; 0: it keeps the law. */
+    float asymmetry;      // [1] most |f(a, b) - f(b, a)| / the larger of them, over its parameters
+    float largest_albedo; // [1] most light that it returns for 1 that arrives, where above 1
 };
-extern const struct sr_bsdf_model *const sr_bsdf_models[]; // ends with NULL
+
+/* The models: a new one is its file and its line here. */
+#define SR_BSDF_MODELS(X)                                                                                              \
+    X(diffuse)                                                                                                         \
+    X(diffuse_transmission)                                                                                            \
+    X(conductor)                                                                                                       \
+    X(dielectric)                                                                                                      \
+    X(thin_dielectric)                                                                                                 \
+    X(coated_diffuse)                                                                                                  \
+    X(coated_conductor)
+
+#define SR_BSDF_DECLARE(name) extern const struct sr_bsdf_model sr_bsdf_##name;
+SR_BSDF_MODELS(SR_BSDF_DECLARE)
+extern const struct sr_bsdf_model *const sr_bsdf_models[]; // in the order of the list; ends with NULL
 const struct sr_bsdf_model *sr_bsdf_model_find(const char *name);
 
 /* A BSDF at a point: plain data, no pointers to temporaries. */
@@ -71,7 +104,8 @@ static inline float sr_bsdf_pdf(const struct sr_bsdf *b, sr_vec3 wo, sr_vec3 wi,
 {
     return b->model->pdf(b->data, wo, wi, mode);
 }
-static inline sr_spectrum sr_bsdf_f_pdf(const struct sr_bsdf *b, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *pdf)
+static inline sr_spectrum sr_bsdf_f_pdf(const struct sr_bsdf *b, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode,
+                                        float *pdf)
 {
     if (b->model->f_pdf)
         return b->model->f_pdf(b->data, wo, wi, mode, pdf);
@@ -103,14 +137,15 @@ struct sr_ggx {
 };
 bool sr_ggx_is_smooth(struct sr_ggx g); // so smooth that it counts as a mirror: max alpha < 1e-3
 // the functions below raise each alpha to 1e-4 at least
-float sr_ggx_D(struct sr_ggx g, sr_vec3 wm);                            // [1/sr]
-float sr_ggx_G1(struct sr_ggx g, sr_vec3 w);                            // [1]
-float sr_ggx_G(struct sr_ggx g, sr_vec3 wo, sr_vec3 wi);                // [1]
-float sr_ggx_visible_pdf(struct sr_ggx g, sr_vec3 w, sr_vec3 wm);       // [1/sr] of visible normals
+float sr_ggx_D(struct sr_ggx g, sr_vec3 wm);                      // [1/sr]
+float sr_ggx_G1(struct sr_ggx g, sr_vec3 w);                      // [1]
+float sr_ggx_G(struct sr_ggx g, sr_vec3 wo, sr_vec3 wi);          // [1]
+float sr_ggx_visible_pdf(struct sr_ggx g, sr_vec3 w, sr_vec3 wm); // [1/sr] of visible normals
 sr_vec3 sr_ggx_sample_visible(struct sr_ggx g, sr_vec3 w, sr_vec2 u);
-float sr_ggx_roughness_to_alpha(float roughness);                       // pbrt's: sqrt(roughness)
+float sr_ggx_roughness_to_alpha(float roughness); // pbrt's: sqrt(roughness)
 
-/* The models' plain data: what a material fills in. Each spectrum is at the path's wavelengths. */
+/* Plain data of the models that materials of their own fill in; all others keep theirs in their file, filled in by the table.
+ * Each spectrum is at the path's wavelengths. */
 struct sr_bsdf_diffuse {
     sr_spectrum reflectance; // [1]
 };
@@ -127,24 +162,24 @@ struct sr_bsdf_dielectric {
 };
 struct sr_bsdf_thin_dielectric {
     float eta; // [1]
-    bool sums_as_pbrt; // the bounces in the pane are summed for the mean of the polarisations, as pbrt-v4 does, not for each:
-                       // T is too small by up to 0.02. For comparing images only.
+    bool
+        sums_as_pbrt; // the bounces in the pane are summed for the mean of the polarisations, as pbrt-v4 does, not for each:
+                      // T is too small by up to 0.02. For comparing images only.
 };
 /* A dielectric coat over a base, with an optional medium between (position-free random walk, Guo, Hasan & Zhao 2018). */
 struct sr_bsdf_coated {
-    sr_spectrum base_reflectance;  // [1]  coateddiffuse
-    sr_spectrum base_eta, base_k;  // [1]  coatedconductor, relative to the coat
-    sr_spectrum albedo;            // [1]  single-scattering albedo of the medium; black: it only absorbs
+    sr_spectrum base_reflectance; // [1]  coateddiffuse
+    sr_spectrum base_eta, base_k; // [1]  coatedconductor, relative to the coat
+    sr_spectrum albedo;           // [1]  single-scattering albedo of the medium; black: it only absorbs
     struct sr_ggx coat_ggx, base_ggx;
     float coat_eta;  // [1]
     float thickness; // [1] optical: in units of the medium's mean free path
     float g;         // [1] Henyey-Greenstein
     int32_t max_depth, sample_count;
-    uint32_t seed;   // of this vertex: f is a random walk
-    bool weighs_as_pbrt; // reproduces a bias of pbrt-v4: light through a rough coat is 2 to 12 % too bright (of f, not of
-                         // sample). For comparing images only.
+    uint32_t seed; // of this vertex: f is a random walk
+    bool
+        weighs_as_pbrt; // reproduces a bias of pbrt-v4: light through a rough coat is 2 to 12 % too bright (of f, not of
+                        // sample). For comparing images only.
 };
-extern const struct sr_bsdf_model sr_bsdf_diffuse, sr_bsdf_diffuse_transmission, sr_bsdf_conductor, sr_bsdf_dielectric,
-    sr_bsdf_thin_dielectric, sr_bsdf_coated_diffuse, sr_bsdf_coated_conductor;
 
 #endif

@@ -44,6 +44,11 @@ static bool is_delta(const struct layers *l)
     return l->top.is_smooth && l->base_is_smooth && !l->has_medium;
 }
 
+static void ready(void *self, const struct sr_bsdf_at *at)
+{
+    ((struct sr_bsdf_coated *)self)->seed = at->seed;
+}
+
 static uint32_t lobes(const void *self)
 {
     struct layers l = layers_of(self, true);
@@ -132,6 +137,7 @@ const struct sr_bsdf_model sr_bsdf_coated_conductor = {
     .params = params,
     .size = sizeof(struct sr_bsdf_coated),
     .is_random = true,
+    .ready = ready,
     .lobes = lobes,
     .f = f,
     .pdf = pdf,

@@ -35,6 +35,11 @@ static const struct sr_param params[] = {
     {0},
 };
 
+static void ready(void *self, const struct sr_bsdf_at *at)
+{
+    ((struct sr_bsdf_coated *)self)->seed = at->seed;
+}
+
 static uint32_t lobes(const void *self)
 {
     struct layers l = layers_of(self, false);
@@ -266,6 +271,7 @@ const struct sr_bsdf_model sr_bsdf_coated_diffuse = {
     .params = params,
     .size = sizeof(struct sr_bsdf_coated),
     .is_random = true,
+    .ready = ready,
     .lobes = lobes,
     .f = f,
     .pdf = pdf,

@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* The list of all models: a new one is a file and a line here. */
+/* The list of all models, out of the one in the door. */
 #include "bsdf/bsdf.h"
 
 #include <string.h>
 
-const struct sr_bsdf_model *const sr_bsdf_models[] = {
-    &sr_bsdf_diffuse,         &sr_bsdf_diffuse_transmission, &sr_bsdf_conductor,        &sr_bsdf_dielectric,
-    &sr_bsdf_thin_dielectric, &sr_bsdf_coated_diffuse,       &sr_bsdf_coated_conductor, NULL,
-};
+#define ADDRESS(name) &sr_bsdf_##name,
+const struct sr_bsdf_model *const sr_bsdf_models[] = {SR_BSDF_MODELS(ADDRESS) NULL};
 
 const struct sr_bsdf_model *sr_bsdf_model_find(const char *name)
 {

@@ -22,8 +22,9 @@ struct sr_material {
     struct sr_texels normal_map;           // width 0: none; "normalmap": numbers, bytes count as byte / 255
 };
 
-/* One file of src/material/ each. The importer fills the struct by the table, calls prepare once, and from then on the
- * material never changes. Textures that a table leaves out may be of NULL model: prepare knows the defaults. */
+/* A BSDF model needs no file here: its material follows from its table. Those that have one give the words of pbrt, or more
+ * than the BSDF's own parameters. The importer fills the (zeroed) struct by the table, calls sr_material_prepare once, and
+ * from then on the material never changes. Textures that a table leaves out may be of NULL model: the defaults are known. */
 struct sr_material_model {
     const char *name; // the scene file's word
     const struct sr_param *params;
@@ -33,8 +34,12 @@ struct sr_material_model {
     /* mix: the part that is here, and what is left of the uniform number; NULL for all others */
     const struct sr_material *(*choose)(const void *self, struct sr_material_context *c);
 };
-extern const struct sr_material_model *const sr_material_models[]; // ends with NULL
+const struct sr_material_model *sr_material_model(int i); // all that scenes may name, the i-th; NULL past the end
 const struct sr_material_model *sr_material_model_find(const char *name);
+/* The one that follows from the BSDF's table, also where a file of this room bears the same name. */
+const struct sr_material_model *sr_material_of_bsdf(const struct sr_bsdf_model *bsdf);
+sr_status sr_material_prepare(const struct sr_material_model *model, void *self, struct sr_arena *arena,
+                              struct sr_error *error);
 
 /* Whether anything of the material may look at the footprint of a point: a texture that is not constant, or a bump map. */
 bool sr_material_has_footprint(const struct sr_material *material);

@@ -33,10 +33,10 @@ static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, s
         return SR_OK;
     const struct sr_material_model *m = sr_material_model_find(e->model);
     if (!m) {
-        const char *names[40];
+        const char *names[120];
         size_t n = 0;
-        for (; sr_material_models[n] && n < 40; ++n)
-            names[n] = sr_material_models[n]->name;
+        for (; n < 120 && sr_material_model((int)n); ++n)
+            names[n] = sr_material_model((int)n)->name;
         return sr_pbrt_unsupported(b, e, names, n);
     }
     struct sr_material *material = sr_arena_alloc(b->arena, sizeof *material);
@@ -57,7 +57,7 @@ static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, s
     if (status != SR_OK)
         return status;
     struct sr_error inner = {0};
-    if (m->prepare && m->prepare(self, b->arena, &inner) != SR_OK)
+    if (sr_material_prepare(m, self, b->arena, &inner) != SR_OK)
         return sr_pbrt_wrap(b, e, &inner);
     material->model = m;
     material->self = self;

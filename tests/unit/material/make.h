@@ -30,7 +30,7 @@ static inline struct made make(const char *name)
         void *member = (char *)m.self + p->offset;
         if (p->kind == SR_PARAM_FLOAT)
             *(float *)member = (float)p->initial;
-        else if (p->kind == SR_PARAM_INT)
+        else if (p->kind == SR_PARAM_INT || p->kind == SR_PARAM_ENUM)
             *(int32_t *)member = (int32_t)p->initial;
         else if (p->kind == SR_PARAM_BOOL)
             *(bool *)member = p->initial != 0;
@@ -68,11 +68,18 @@ static inline struct sr_texture ramp(struct sr_arena *arena, float a, float b, f
     return (struct sr_texture){model, self};
 }
 
+static inline bool try_to_make(struct made *m, struct sr_material *material)
+{
+    *material = (struct sr_material){.model = m->model, .self = m->self};
+    return sr_material_prepare(m->model, m->self, &m->arena, &m->error) == SR_OK;
+}
+
 static inline struct sr_material made_material(struct made *m)
 {
-    if (m->model->prepare && m->model->prepare(m->self, &m->arena, &m->error) != SR_OK)
+    struct sr_material material;
+    if (!try_to_make(m, &material))
         test_fail(__FILE__, __LINE__, "%s: %s", m->model->name, m->error.text);
-    return (struct sr_material){.model = m->model, .self = m->self};
+    return material;
 }
 
 static inline struct sr_wavelengths wavelengths(void)

@@ -4,9 +4,9 @@
 
 TEST(tables_are_complete_and_defaults_prepare)
 {
+    const struct sr_material_model *model;
     int count = 0;
-    for (; sr_material_models[count]; ++count) {
-        const struct sr_material_model *model = sr_material_models[count];
+    for (; (model = sr_material_model(count)); ++count) {
         EXPECT(sr_material_model_find(model->name) == model);
         EXPECT((model->bsdf != NULL) != (model->choose != NULL));
         for (const struct sr_param *p = model->params; p->name; ++p)
@@ -14,12 +14,18 @@ TEST(tables_are_complete_and_defaults_prepare)
         if (model->choose)
             continue;
         struct made m = make(model->name);
-        struct sr_material material = made_material(&m);
+        struct sr_material material = {0};
+        if (!try_to_make(&m, &material)) { // models of files say what they miss
+            EXPECT(m.error.text[0] != 0);
+            sr_arena_free(&m.arena);
+            continue;
+        }
         struct shaded s = shade(&material, point(), 0.5f);
         EXPECT(s.bsdf.model ? s.bsdf.model->size <= SR_BSDF_SIZE : strcmp(model->name, "interface") == 0);
         sr_arena_free(&m.arena);
     }
-    EXPECT_EQUAL_INT(count, 9);
+    EXPECT(count >= 9);
+    EXPECT(sr_material_of_bsdf(&sr_bsdf_conductor) != sr_material_model_find("conductor"));
 }
 
 TEST(diffuse_holds_its_reflectance_in_0_to_1)

@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: MIT */
+/* The BRDF laboratory: a BSDF as a specimen, read from words; its reflectances, its certificate.
+ *
+ * A specimen is what `steradian brdf` is told on the command line; it needs no scene. Directions are those of the room
+ * bsdf/: local, normal +z, both away from the surface. */
+#ifndef SR_LAB_LAB_H
+#define SR_LAB_LAB_H
+
+#include "bsdf/bsdf.h"
+#include "material/material.h"
+
+/* ---- specimens ---- */
+
+enum { SR_SPECIMEN_PARTS = 8 };
+
+/* A weighted sum of BSDFs. One part of weight 1 is the plain case. */
+struct sr_specimen {
+    const char *title; // the words it was read from
+    int part_count;
+    struct sr_specimen_part {
+        struct sr_material material;
+        float weight;                      // [1]
+        const struct sr_bsdf_model *model; // NULL: the material of a scene
+    } parts[SR_SPECIMEN_PARTS];
+};
+
+/* Reads words: MODEL [name=value …], or a file of measured data, or SCENE.pbrt:MATERIAL; parts are joined by "+", and a part
+ * may begin with a weight: .3*MODEL. A value is a number, for spectra also a name (metal-Au-eta), a file of "nm value" lines, or
+ * rgb:R,G,B or nm:value,nm:value,…. Unknown names and values out of range are errors that say what was expected.
+ * Everything is kept in the arena. */
+sr_status sr_specimen_read(struct sr_arena *arena, int count, const char *const *words, struct sr_specimen *specimen,
+                           struct sr_log log, struct sr_error *error);
+
+/* A specimen at wavelengths [nm]: what can be evaluated. at->bsdf points into *at: do not copy it. */
+struct sr_specimen_at {
+    sr_spectrum lambda;  // [nm]
+    struct sr_bsdf bsdf; // of one part; or the sum of parts[], a model of its own
+    struct sr_bsdf parts[SR_SPECIMEN_PARTS];
+};
+void sr_specimen_at(const struct sr_specimen *specimen, sr_spectrum lambda, uint32_t seed, struct sr_specimen_at *at);
+
+/* ---- the same models in double precision ---- */
+
+/* Every model's file is compiled a second time with double in place of float. The twin of a specimen's part follows its
+ * parameters; NULL where there is none (scene materials with textures, files). f in 1/sr for each wavelength. */
+struct sr_twin;
+sr_status sr_twin_make(struct sr_arena *arena, const struct sr_specimen_at *at, const struct sr_twin **twin,
+                       struct sr_error *error);
+void sr_twin_f(const struct sr_twin *twin, const double wo[3], const double wi[3], enum sr_transport mode,
+               double f[SR_LAMBDA_COUNT]);
+double sr_twin_pdf(const struct sr_twin *twin, const double wo[3], const double wi[3], enum sr_transport mode);
+
+/* ---- reflectance between solid angles (Nicodemus et al. 1977) ---- */
+
+enum sr_beam_kind { SR_BEAM_DIRECTION, SR_BEAM_CONE, SR_BEAM_HEMISPHERE };
+struct sr_beam {
+    enum sr_beam_kind kind;
+    double theta, phi; // [deg] of the direction or of the cone's axis
+    double half_angle; // [deg] of the cone, above 0; no part of it may lie below the horizon
+};
+sr_status sr_beam_read(const char *text, struct sr_beam *beam,
+                       struct sr_error *error); // direction:T[,P] cone:T,P,H hemisphere
+
+struct sr_reflectance {
+    const char *name;                    // Nicodemus': "biconical reflectance", …
+    const char *unit;                    // "1", or "sr^-1" where light leaves into a single direction
+    double value[SR_LAMBDA_COUNT];       // [unit]
+    double error[SR_LAMBDA_COUNT];       // [unit] cubature: a bound; Monte Carlo: the standard error
+    double factor[SR_LAMBDA_COUNT];      // [1] reflectance factor: over that of a perfect diffuser in the same geometry
+    double projected_from, projected_to; // [sr] projected solid angles
+    uint64_t evaluations;
+    bool has_converged;
+};
+/* By adaptive cubature of the specimen in double where it has a twin, to a relative tolerance; delta lobes are counted
+ * where they can be (directional-hemispherical) and refused elsewhere. */
+sr_status sr_reflectance_cubature(const struct sr_specimen *specimen, sr_spectrum lambda, const struct sr_beam *from,
+                                  const struct sr_beam *to, double tolerance, struct sr_reflectance *out,
+                                  struct sr_error *error);
+/* By the specimen's own sampler where light is gathered, in `samples` samples. */
+sr_status sr_reflectance_monte_carlo(const struct sr_specimen *specimen, sr_spectrum lambda, const struct sr_beam *from,
+                                     const struct sr_beam *to, uint64_t samples, uint32_t seed,
+                                     struct sr_reflectance *out, struct sr_error *error);
+
+/* ---- the certificate ---- */
+
+enum sr_verdict {
+    SR_PASSED,
+    SR_DOCUMENTED,
+    SR_FAILED,
+    SR_SKIPPED
+}; // DOCUMENTED: deviates by what the model's table says
+struct sr_check {
+    const char *name; // "reciprocity"
+    enum sr_verdict verdict;
+    double measured, limit; // [unit]
+    const char *unit;
+    char text[200]; // where and how: "largest at theta_o = 71 deg, alpha = 0.02"
+};
+struct sr_certificate {
+    struct sr_check checks[24];
+    int count;
+    bool passed; // no check failed
+};
+struct sr_certificate_options {
+    uint32_t sets;    // parameter sets drawn from the table; 0: only the parameters given
+    uint32_t samples; // per set for statistical tests
+    uint32_t seed;
+    double significance; // [1] of the whole family of statistical tests, such as 1e-6
+};
+/* Of a model with parameters drawn from its table, or, options->sets = 0, of the specimen as it is. */
+sr_status sr_certify(const struct sr_specimen *specimen, const struct sr_certificate_options *options,
+                     struct sr_certificate *out, struct sr_error *error);
+/* The same for a model that no list knows; how the tests see that broken models are caught. */
+sr_status sr_certify_model(const struct sr_bsdf_model *model, const struct sr_certificate_options *options,
+                           struct sr_certificate *out, struct sr_error *error);
+
+#endif
