@@ -12,6 +12,15 @@
 #include <unistd.h>
 #include <zlib.h>
 
+// a larger piece with what the old one holds; NULL: nothing is left of either
+static char *grow(char *old, size_t used, size_t size)
+{
+    char *grown = sr_realloc(old, used, size);
+    if (!grown)
+        sr_free(old);
+    return grown;
+}
+
 /* All bytes of a descriptor, of known size or not. */
 static sr_status read_all(int fd, const char *path, size_t expected, size_t max_size, char **data, size_t *size, struct sr_error *error)
 {
@@ -34,10 +43,13 @@ static sr_status read_all(int fd, const char *path, size_t expected, size_t max_
         }
         if (n == capacity) {
             char extra; // most files are as long as they say: look before growing
-            ssize_t more = read(fd, &extra, 1);
+            ssize_t more;
+            do
+                more = read(fd, &extra, 1);
+            while (more < 0 && errno == EINTR);
             if (more <= 0)
                 break;
-            bytes = sr_realloc(bytes, n, 2 * capacity + 1);
+            bytes = grow(bytes, n, 2 * capacity + 1);
             capacity *= 2;
             if (bytes)
                 bytes[n++] = extra;
@@ -78,7 +90,7 @@ static sr_status gunzip(const char *path, size_t max_size, char **data, size_t *
         if (n > max_size || (status != Z_OK && status != Z_STREAM_END))
             break;
         if (n == capacity) {
-            out = sr_realloc(out, n, 2 * capacity + 1);
+            out = grow(out, n, 2 * capacity + 1);
             capacity *= 2;
         }
     }

@@ -45,7 +45,7 @@ static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum s
                                  .pdf = fabsf(wi.z) * SR_INV_PI,
                                  .eta = 1,
                                  .lobe = SR_LOBE_REFLECTION | SR_LOBE_DIFFUSE};
-    return s->pdf > 0 && wo.z != 0;
+    return s->pdf > 0 && wo.z != 0 && lobes(self);
 }
 
 static sr_spectrum albedo(const void *self, sr_vec3 wo)
