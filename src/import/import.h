@@ -41,4 +41,9 @@ sr_status sr_import_pbrt(const char *path, const struct sr_import_options *optio
                          struct sr_log *log, struct sr_error *error);
 void sr_import_result_free(struct sr_import_result *result);
 
+/* One material of a scene, without the rest: by the name of its MakeNamedMaterial, or "#2" for the second Material directive.
+ * NULL in *out: an interface. Everything is kept in the arena. */
+sr_status sr_import_pbrt_material(const char *path, const char *name, struct sr_arena *arena,
+                                  const struct sr_material **out, struct sr_log *log, struct sr_error *error);
+
 #endif

@@ -5,7 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static const struct command *const commands[] = {&command_render, &command_info, &command_compare, &command_image};
+static const struct command *const commands[] = {&command_render, &command_info, &command_compare, &command_image,
+                                                 &command_brdf};
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
 int command_exit(sr_status status)
@@ -73,7 +74,7 @@ int main(int argc, char **argv)
     }
     for (int i = 0; i < COMMANDS; ++i)
         if (strcmp(name, commands[i]->name) == 0) {
-            for (int k = 2; k < argc && strcmp(argv[k], "--") != 0; ++k)
+            for (int k = 2; commands[i]->help && k < argc && strcmp(argv[k], "--") != 0; ++k)
                 if (strcmp(argv[k], "--help") == 0 || strcmp(argv[k], "-h") == 0) {
                     fputs(commands[i]->help, stdout);
                     return 0;
