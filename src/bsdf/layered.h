@@ -42,6 +42,9 @@ static inline struct layers layers_of(const struct sr_bsdf_coated *c, bool metal
 /* exp(-x) for x >= 0; relative error < 3e-7. Taylor's series of 2^f about 0, times a power of two. */
 static inline float exp_minus(float x)
 {
+#ifdef SR_DOUBLE
+    return exp(-x);
+#else
     float t = larger(x * -1.44269504f, -126);
     float whole = rintf(t), f = (t - whole) * 0.69314718f;
     float p = 1 + f * (1 + f * (1.0f / 2 + f * (1.0f / 6 + f * (1.0f / 24 + f * (1.0f / 120 + f * (1.0f / 720))))));
@@ -49,10 +52,14 @@ static inline float exp_minus(float x)
     float power;
     memcpy(&power, &bits, 4);
     return p * power;
+#endif
 }
 /* -ln x for normal x > 0. ln m = 2 artanh((m - 1) / (m + 1)) of the mantissa; relative error < 3e-7. */
 static inline float minus_log(float x)
 {
+#ifdef SR_DOUBLE
+    return -log(x);
+#else
     int32_t bits;
     memcpy(&bits, &x, 4);
     int32_t exponent = (bits - 0x3f3504f3) >> 23; // the mantissa in sqrt(1/2) ... sqrt(2)
@@ -62,6 +69,7 @@ static inline float minus_log(float x)
     float s = (m - 1) / (m + 1), s2 = s * s;
     return -2 * s * (1 + s2 * (1.0f / 3 + s2 * (1.0f / 5 + s2 * (1.0f / 7 + s2 * (1.0f / 9))))) -
            (float)exponent * 0.69314718f;
+#endif
 }
 static inline float crossing(float distance, sr_vec3 w) // transmittance
 {
@@ -70,9 +78,15 @@ static inline float crossing(float distance, sr_vec3 w) // transmittance
 
 static inline uint32_t float_bits(float x)
 {
+#ifdef SR_DOUBLE
+    uint64_t bits; // folded: a number that a float can hold has zeros below
+    memcpy(&bits, &x, 8);
+    return (uint32_t)(bits ^ bits >> 32) ^ (uint32_t)(bits >> 26);
+#else
     uint32_t bits;
     memcpy(&bits, &x, 4);
     return bits;
+#endif
 }
 /* Numbers that belong to this vertex and these directions: the estimates are pure functions. */
 static inline struct sr_rng rng_of(uint32_t seed, sr_vec3 a, float b, float c, float d)

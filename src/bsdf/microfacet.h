@@ -199,7 +199,7 @@ static inline sr_spectrum conductor_fresnel(float c, sr_spectrum eta, sr_spectru
     sr_spectrum t0 = eta * eta - k * k - s2;
     sr_spectrum ab = sr_spectrum_sqrt(t0 * t0 + 4 * nk * nk);
     // a = sqrt((ab + t0) / 2); where t0 < 0 by the product a b = n k, which does not cancel
-    sr_spectrum magnitude = (sr_spectrum)((sr_spectrum_int)t0 & 0x7fffffff);
+    sr_spectrum magnitude = sr_spectrum_abs(t0);
     sr_spectrum big = sr_spectrum_sqrt(0.5f * (ab + magnitude));
     sr_spectrum other = nk / (big + 1e-30f);
     sr_spectrum_int negative = t0 < 0;

@@ -41,14 +41,16 @@ void sr_specimen_at(const struct sr_specimen *specimen, sr_spectrum lambda, uint
 
 /* ---- the same models in double precision ---- */
 
-/* Every model's file is compiled a second time with double in place of float. The twin of a specimen's part follows its
- * parameters; NULL where there is none (scene materials with textures, files). f in 1/sr for each wavelength. */
+/* Every model's file is compiled a second time with double in place of float. The twin of a BSDF (of one model, or a sum)
+ * has the parameters of its table; *twin is NULL where there is none (models that read files). A parameter is a float; the
+ * twin has either that number, or the shortest decimal that rounds to it: what somebody has typed. */
 struct sr_twin;
-sr_status sr_twin_make(struct sr_arena *arena, const struct sr_specimen_at *at, const struct sr_twin **twin,
-                       struct sr_error *error);
+enum sr_twin_numbers { SR_TWIN_SAME, SR_TWIN_DECIMAL };
+sr_status sr_twin_make(struct sr_arena *arena, const struct sr_bsdf *bsdf, sr_spectrum lambda,
+                       enum sr_twin_numbers numbers, const struct sr_twin **twin, struct sr_error *error);
 void sr_twin_f(const struct sr_twin *twin, const double wo[3], const double wi[3], enum sr_transport mode,
-               double f[SR_LAMBDA_COUNT]);
-double sr_twin_pdf(const struct sr_twin *twin, const double wo[3], const double wi[3], enum sr_transport mode);
+               double f[SR_LAMBDA_COUNT]); // [1/sr]
+double sr_twin_pdf(const struct sr_twin *twin, const double wo[3], const double wi[3], enum sr_transport mode); // [1/sr]
 
 /* ---- reflectance between solid angles (Nicodemus et al. 1977) ---- */
 

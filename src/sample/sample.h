@@ -64,7 +64,7 @@ struct sr_sampler sr_sampler_start(enum sr_sampler_kind kind, uint32_t seed, uin
  * in which each bit depends on lower ones only (S. Laine & T. Karras 2011, constants by N. Vegdahl 2021); shuffling the
  * index the same way makes groups independent (B. Burley, Practical Hash-based Owen Scrambling, 2020). The shuffle stays
  * within blocks of 65536, so that smaller indices need two look-ups. */
-typedef float sr_u4 __attribute__((vector_size(16)));
+typedef float sr_u4 __attribute__((vector_size(4 * sizeof(float))));
 typedef uint32_t sr_u4_bits __attribute__((vector_size(16)));
 extern const sr_u4_bits sr_sobol_table[4][256];
 extern const uint8_t sr_reversed_byte[256];
@@ -139,7 +139,7 @@ static inline void sr_sample8(const struct sr_sampler *s, uint32_t group, sr_u4 
     typedef uint64_t sr_wide4 __attribute__((vector_size(32)));
     typedef uint32_t sr_u8_bits __attribute__((vector_size(32)));
     typedef int32_t sr_i8 __attribute__((vector_size(32)));
-    typedef float sr_u8 __attribute__((vector_size(32)));
+    typedef float sr_u8 __attribute__((vector_size(8 * sizeof(float))));
     typedef uint8_t sr_bytes32 __attribute__((vector_size(32)));
     uint64_t wide[2] = {(s->key ^ (uint64_t)group << 32) * 0x9e3779b97f4a7c15ull, (s->key ^ (uint64_t)(group + 1) << 32) * 0x9e3779b97f4a7c15ull};
     uint32_t i0 = (uint32_t)sr_reversed_byte[s->sample & 255] << 8 | sr_reversed_byte[s->sample >> 8 & 255];

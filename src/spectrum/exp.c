@@ -9,6 +9,11 @@
 
 sr_spectrum sr_spectrum_exp(sr_spectrum s)
 {
+#ifdef SR_DOUBLE
+    for (int i = 0; i < SR_LAMBDA_COUNT; ++i)
+        s[i] = exp(s[i]);
+    return s;
+#else
     // ln 2 in two parts, so that n ln 2 is subtracted without loss (Cody and Waite)
     const float ln2_high = 0x1.62ep-1f, ln2_low = 0x1.0bfbe8p-15f, shift = 0x1.8p23f;
     sr_spectrum x = sr_spectrum_select(s < -88.0f, SR_BLACK - 88.0f, s);
@@ -27,4 +32,5 @@ sr_spectrum sr_spectrum_exp(sr_spectrum s)
     sr_spectrum low = (sr_spectrum)((half + 127) << 23), high = (sr_spectrum)((k - half + 127) << 23);
     sr_spectrum y = sr_spectrum_select(s < -87.3365f, SR_BLACK, p * low * high);
     return sr_spectrum_select(s > 88.7228f, SR_BLACK + INFINITY, y);
+#endif
 }

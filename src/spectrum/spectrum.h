@@ -14,7 +14,14 @@
 #endif
 
 typedef float sr_spectrum __attribute__((vector_size(SR_LAMBDA_COUNT * sizeof(float))));
-typedef int32_t sr_spectrum_int __attribute__((vector_size(SR_LAMBDA_COUNT * sizeof(int32_t))));
+#ifdef SR_DOUBLE // the laboratory compiles the models a second time with double in place of float
+typedef int64_t sr_lane;
+#define SR_LANE_MAX INT64_MAX
+#else
+typedef int32_t sr_lane; // an integer of the size of a component
+#define SR_LANE_MAX INT32_MAX
+#endif
+typedef sr_lane sr_spectrum_int __attribute__((vector_size(SR_LAMBDA_COUNT * sizeof(sr_lane))));
 
 #define SR_BLACK ((sr_spectrum){0})
 #define SR_ONE (SR_BLACK + 1.0f)
@@ -23,6 +30,10 @@ typedef int32_t sr_spectrum_int __attribute__((vector_size(SR_LAMBDA_COUNT * siz
 static inline sr_spectrum sr_spectrum_select(sr_spectrum_int mask, sr_spectrum a, sr_spectrum b)
 {
     return (sr_spectrum)((mask & (sr_spectrum_int)a) | (~mask & (sr_spectrum_int)b));
+}
+static inline sr_spectrum sr_spectrum_abs(sr_spectrum s)
+{
+    return (sr_spectrum)((sr_spectrum_int)s & SR_LANE_MAX);
 }
 /* In pairs, so that no step waits for all before it. */
 static inline float sr_spectrum_max(sr_spectrum s)
@@ -45,7 +56,7 @@ static inline bool sr_spectrum_any(sr_spectrum_int mask)
     typedef uint64_t words __attribute__((vector_size(sizeof(sr_spectrum_int))));
     words w = (words)mask;
     uint64_t any = 0;
-    for (int i = 0; i < SR_LAMBDA_COUNT / 2; ++i)
+    for (size_t i = 0; i < sizeof w / sizeof any; ++i)
         any |= w[i];
     return any != 0;
 }

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: MIT
+# Writes the copies that cmake/double.cmake compiles: cmake -DSOURCE=src -DFOLDER=build/double -P double_sources.cmake
+cmake_policy(VERSION 3.21)
+# decimal constants: 1.5f, 1e-3f, .5f; the character before keeps hexadecimal ones out (they are exact in a float), and %.3f
+set(constant "([^%0-9A-Za-z_.])(([0-9]+\\.[0-9]*|\\.[0-9]+|[0-9]+)([eE][-+]?[0-9]+)?)f([^0-9A-Za-z_])")
+
+file(READ ${FOLDER}/list.txt inputs)
+string(STRIP "${inputs}" inputs)
+
+function(write_if_different name text)
+  if(EXISTS ${name})
+    file(READ ${name} old)
+    if(old STREQUAL text)
+      return()
+    endif()
+  endif()
+  file(WRITE ${name} "${text}")
+endfunction()
+
+set(system "")
+set(names "")
+foreach(name ${inputs})
+  file(READ ${SOURCE}/${name} text)
+  string(REGEX MATCHALL "# *include <[^>\n]+>" found "${text}")
+  list(APPEND system ${found})
+  string(REGEX MATCHALL "sr_[a-z0-9_A-Z]+" found "${text}")
+  list(APPEND names ${found})
+  foreach(pass 1 2) # twice for neighbours that share a character
+    string(REGEX REPLACE "${constant}" "\\1\\2\\5" text "${text}")
+  endforeach()
+  # models that read files hold what those say, in floats: they have no twin, only an empty place in the list
+  if(name MATCHES "^bsdf/.*\\.c$" AND text MATCHES "include \"measured/|SR_PARAM_FILE")
+    string(REGEX MATCHALL "const struct sr_bsdf_model sr_bsdf_[a-z0-9_]+" models "${text}")
+    list(REMOVE_DUPLICATES models)
+    string(JOIN ";\n" models ${models})
+    set(text "#include \"bsdf/bsdf.h\"\n${models};\n")
+  endif()
+  write_if_different(${FOLDER}/${name} "#line 1 \"${SOURCE}/${name}\"\n${text}")
+endforeach()
+list(REMOVE_DUPLICATES system)
+list(REMOVE_DUPLICATES names)
+
+# names of the floor below stay: it knows no floats
+set(kept "")
+file(GLOB doors ${SOURCE}/base/base.h ${SOURCE}/../include/steradian/*.h)
+foreach(door ${doors})
+  file(READ ${door} text)
+  string(REGEX MATCHALL "sr_[a-z0-9_A-Z]+" found "${text}")
+  list(APPEND kept ${found})
+endforeach()
+list(REMOVE_ITEM names ${kept})
+list(SORT names)
+
+set(text "/* Names that double precision has for itself; generated. */\n")
+foreach(name ${names})
+  string(APPEND text "#define ${name} ${name}_double\n")
+endforeach()
+write_if_different(${FOLDER}/double_names.h "${text}")
+
+set(text "/* What the sources read from the system; generated. */\n#include <complex.h>\n#include <math.h>\n#include <pthread.h>\n#include <string.h>\n#include <steradian/base.h>\n")
+foreach(line ${system})
+  if(NOT line MATCHES "steradian/")
+    string(APPEND text "${line}\n")
+  endif()
+endforeach()
+write_if_different(${FOLDER}/double_system.h "${text}")
