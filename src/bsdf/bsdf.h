@@ -77,6 +77,10 @@ struct sr_bsdf_model {
     X(diffuse_transmission)                                                                                            \
     X(conductor)                                                                                                       \
     X(dielectric)                                                                                                      \
+    X(microfacet)                                                                                                      \
+    X(beckmann_conductor)                                                                                              \
+    X(cook_torrance)                                                                                                   \
+    X(torrance_sparrow)                                                                                                \
     X(thin_dielectric)                                                                                                 \
     X(coated_diffuse)                                                                                                  \
     X(coated_conductor)
