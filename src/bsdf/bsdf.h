@@ -81,6 +81,9 @@ struct sr_bsdf_model {
     X(beckmann_conductor)                                                                                              \
     X(cook_torrance)                                                                                                   \
     X(torrance_sparrow)                                                                                                \
+    X(ward)                                                                                                            \
+    X(ward_duer)                                                                                                       \
+    X(ward_gmd)                                                                                                        \
     X(thin_dielectric)                                                                                                 \
     X(coated_diffuse)                                                                                                  \
     X(coated_conductor)

@@ -84,6 +84,7 @@ static struct sr_bsdf draw(const struct sr_bsdf_model *model, struct sr_rng *rng
                 v = powf(10, (kind < sharp ? 4 : 1.7f) * uniform(rng)); // else broad enough for quadratures
             if (strcmp(p->name, "eta") == 0 && kind >= sharp && v > 0.67f && v < 1.5f)
                 v = v < 1 ? 0.67f : 1.5f;
+            v = sr_clamp(v, lo, hi);
             memcpy(at, &v, sizeof v);
         } else if (p->kind == SR_PARAM_INT) {
             int32_t v = strcmp(p->name, "sample_count") == 0 ? 1 : (int32_t)p->max;
