@@ -86,7 +86,11 @@ struct sr_bsdf_model {
     X(ward_gmd)                                                                                                        \
     X(thin_dielectric)                                                                                                 \
     X(coated_diffuse)                                                                                                  \
-    X(coated_conductor)
+    X(coated_conductor)                                                                                                \
+    X(thin_film_conductor)                                                                                             \
+    X(thin_film_dielectric)                                                                                            \
+    X(multilayer_conductor)                                                                                            \
+    X(multilayer_dielectric)
 
 #define SR_BSDF_DECLARE(name) extern const struct sr_bsdf_model sr_bsdf_##name;
 SR_BSDF_MODELS(SR_BSDF_DECLARE)
