@@ -90,7 +90,17 @@ struct sr_bsdf_model {
     X(thin_film_conductor)                                                                                             \
     X(thin_film_dielectric)                                                                                            \
     X(multilayer_conductor)                                                                                            \
-    X(multilayer_dielectric)
+    X(multilayer_dielectric)                                                                                           \
+    X(lommel_seeliger)                                                                                                 \
+    X(blinn_phong)                                                                                                     \
+    X(oren_nayar)                                                                                                      \
+    X(eon)                                                                                                             \
+    X(minnaert)                                                                                                        \
+    X(phong_modified)                                                                                                  \
+    X(ashikhmin_shirley)                                                                                               \
+    X(hapke)                                                                                                           \
+    X(lunar)                                                                                                           \
+    X(dust)
 
 #define SR_BSDF_DECLARE(name) extern const struct sr_bsdf_model sr_bsdf_##name;
 SR_BSDF_MODELS(SR_BSDF_DECLARE)

@@ -88,7 +88,7 @@ static struct sr_bsdf draw(const struct sr_bsdf_model *model, struct sr_rng *rng
                     v = 0; // half of the coats are smooth
             } else if (strcmp(p->name, "thickness") == 0)
                 v = powf(10, -2.5f + 3 * uniform(rng));
-            else if (strcmp(p->name, "exponent") == 0)
+            else if (strncmp(p->name, "exponent", 8) == 0)
                 v = powf(10, (kind < sharp ? 4 : 1.7f) * uniform(rng)); // else broad enough for quadratures
             if (strcmp(p->name, "eta") == 0 && kind >= sharp && v > 0.67f && v < 1.5f)
                 v = v < 1 ? 0.67f : 1.5f;
