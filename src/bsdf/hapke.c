@@ -166,5 +166,5 @@ const struct sr_bsdf_model sr_bsdf_hapke = {
     .f = f,
     .pdf = pdf,
     .sample = sample,
-    .largest_albedo = 3,
+    .largest_albedo = 2.71f, // along the normal: albedo, c, both surges and their widths 1, b 0.8
 };

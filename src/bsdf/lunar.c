@@ -8,8 +8,9 @@
  *     pdf = (1 + 2 cos_theta_i) / (4 pi)   [1/sr]
  *
  * B. W. Hapke, A theoretical photometric function for the lunar surface, 1963; the sphere's phase law: E. Schoenberg 1929.
- * g is 0.4 (dense: wide surge) to 0.8; Hapke's fit to the Moon is g = 0.6, t = 0.1. Limits: single scattering, smooth
- * relief: a full disk without limb darkening. */
+ * g is 0.4 (porous: narrow surge) to 0.8; Hapke's fit to the Moon is g = 0.6, t = 0.1. reflectance is no albedo: with it at
+ * 1 and t > 0.2, more light leaves near grazing than arrives. Limits: single scattering, smooth relief: a full disk without
+ * limb darkening. */
 #include "bsdf/hemisphere.h"
 
 struct lunar {
@@ -71,4 +72,5 @@ const struct sr_bsdf_model sr_bsdf_lunar = {
     .f = f,
     .pdf = pdf,
     .sample = sample,
+    .largest_albedo = 1.55f, // toward grazing: reflectance 1, porosity 2, forward 0.5
 };

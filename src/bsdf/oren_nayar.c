@@ -10,8 +10,9 @@
  *     qualitative: E = rho (A + 2 C2 / pi (sin t (t / 2 - sin 2t / 4) + tan t (1 - sin^3 t) / 3)),  t = theta_o
  *
  * M. Oren & S. K. Nayar, Generalization of Lambert's reflectance model, 1994. Limits: both forms are fits to the integrals
- * over the grooves, and lose light as sigma grows, the qualitative one because it leaves out what walls cast on each other;
- * opposite the light at grazing angles, the full one's fit falls below 0 for sigma > 0.6: it is 0 there. */
+ * over the grooves, and lose light as sigma grows, the qualitative one because it leaves out what walls cast on each other.
+ * The full one returns up to 5 % more than arrives near grazing (rho = 1, sigma = 0.3), and opposite the light at grazing
+ * angles its fit falls below 0 for sigma > 0.6: it is 0 there. */
 #include "bsdf/clipped_ltc.h"
 
 struct oren_nayar {
@@ -106,7 +107,7 @@ const struct sr_bsdf_model sr_bsdf_oren_nayar = {
     .name = "oren_nayar",
     .title = "Oren-Nayar",
     .source = "M. Oren & S. K. Nayar, Generalization of Lambert's reflectance model, 1994",
-    .limits = "Fits to single and double scattering in grooves: loses light as sigma grows.",
+    .limits = "Fits to single and double scattering in grooves: loses light as sigma grows, and makes 5 % at grazing.",
     .params = params,
     .size = sizeof(struct oren_nayar),
     .ready = ready,
@@ -115,4 +116,5 @@ const struct sr_bsdf_model sr_bsdf_oren_nayar = {
     .pdf = pdf,
     .sample = sample,
     .albedo = albedo,
+    .largest_albedo = 1.052f, // full, toward grazing: reflectance 1, sigma 0.3
 };
