@@ -75,6 +75,16 @@ struct sr_bsdf_model {
 #define SR_BSDF_MODELS(X)                                                                                              \
     X(diffuse)                                                                                                         \
     X(diffuse_transmission)                                                                                            \
+    X(oren_nayar)                                                                                                      \
+    X(eon)                                                                                                             \
+    X(minnaert)                                                                                                        \
+    X(phong_modified)                                                                                                  \
+    X(blinn_phong)                                                                                                     \
+    X(ashikhmin_shirley)                                                                                               \
+    X(lommel_seeliger)                                                                                                 \
+    X(lunar)                                                                                                           \
+    X(dust)                                                                                                            \
+    X(hapke)                                                                                                           \
     X(conductor)                                                                                                       \
     X(dielectric)                                                                                                      \
     X(microfacet)                                                                                                      \
@@ -90,17 +100,7 @@ struct sr_bsdf_model {
     X(thin_film_conductor)                                                                                             \
     X(thin_film_dielectric)                                                                                            \
     X(multilayer_conductor)                                                                                            \
-    X(multilayer_dielectric)                                                                                           \
-    X(lommel_seeliger)                                                                                                 \
-    X(blinn_phong)                                                                                                     \
-    X(oren_nayar)                                                                                                      \
-    X(eon)                                                                                                             \
-    X(minnaert)                                                                                                        \
-    X(phong_modified)                                                                                                  \
-    X(ashikhmin_shirley)                                                                                               \
-    X(hapke)                                                                                                           \
-    X(lunar)                                                                                                           \
-    X(dust)
+    X(multilayer_dielectric)
 
 #define SR_BSDF_DECLARE(name) extern const struct sr_bsdf_model sr_bsdf_##name;
 SR_BSDF_MODELS(SR_BSDF_DECLARE)

@@ -2,7 +2,7 @@
 /* The Moon after Hapke's first theory: Lommel-Seeliger's law, grains that scatter as Lambert's spheres, and the shadows that
  * vanish when the Sun stands behind the viewer, so that the full Moon outshines two half Moons by far.
  *
- *     a = angle between wo and wi (phase angle, 0: Sun behind the viewer)   [rad],   g = porosity, t = forward
+ *     a = angle between wo and wi (phase angle, 0: Sun behind the viewer)   [rad],   g = compaction, t = forward
  *     f = reflectance 2 / (3 pi) R(a) ((sin a + (pi - a) cos a) / pi + t (1 - cos a)^2) / (cos_theta_i + cos_theta_o)   [1/sr]
  *     R = 2 - tan a / (2 g) (1 - e)(3 - e),  e = exp(-g / tan a),  where a < pi / 2, else 1;   R(0) = 2
  *     pdf = (1 + 2 cos_theta_i) / (4 pi)   [1/sr]
@@ -15,12 +15,12 @@
 
 struct lunar {
     sr_spectrum reflectance;
-    float porosity, forward;
+    float compaction, forward;
 };
 
 static const struct sr_param params[] = {
     {SR_PARAM_ALBEDO, "reflectance", "1", 0, 1, 0.2, offsetof(struct lunar, reflectance), "brightness of the grains"},
-    {SR_PARAM_FLOAT, "porosity", "1", 0.05, 2, 0.6, offsetof(struct lunar, porosity),
+    {SR_PARAM_FLOAT, "compaction", "1", 0.05, 2, 0.6, offsetof(struct lunar, compaction),
      "how closely the grains lie: width of the surge about the Sun's direction"},
     {SR_PARAM_FLOAT, "forward", "1", 0, 0.5, 0.1, offsetof(struct lunar, forward), "light that grains send on"},
     {0},
@@ -40,7 +40,7 @@ static sr_spectrum f(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport
         return SR_BLACK;
     float c = sr_clamp(sr_dot(wo, wi), -1, 1), s = sr_min(sr_length(sr_cross(wo, wi)), 1), a = atan2f(s, c);
     float phase = (s + (SR_PI - a) * c) * SR_INV_PI + m->forward * sr_sqr(1 - c);
-    float R = 1, x = m->porosity * c; // x / s = g / tan a
+    float R = 1, x = m->compaction * c; // x / s = g / tan a
     if (x > 1e-5f * s) {
         float lit = -expm1f(-x / sr_max(s, 1e-30f)); // 1 - e
         R = 2 - s / (2 * x) * lit * (2 + lit);
@@ -72,5 +72,5 @@ const struct sr_bsdf_model sr_bsdf_lunar = {
     .f = f,
     .pdf = pdf,
     .sample = sample,
-    .largest_albedo = 1.55f, // toward grazing: reflectance 1, porosity 2, forward 0.5
+    .largest_albedo = 1.55f, // toward grazing: reflectance 1, compaction 2, forward 0.5
 };

@@ -12,13 +12,13 @@ TEST(lommel_seeliger_reflects_by_its_closed_form)
 
 TEST(lunar_reflects_as_its_equations_integrate)
 {
-    EXPECT_ALBEDO("lunar reflectance=1 porosity=0.6 forward=0.1", 0.342167, 0.351406, 0.398022, 0.509509);
+    EXPECT_ALBEDO("lunar reflectance=1 compaction=0.6 forward=0.1", 0.342167, 0.351406, 0.398022, 0.509509);
 }
 
 /* R(0) = 2, phase 1: f = 2 / (3 pi) rho 2 / (2 mu): at full phase a half Moon's limb is as bright as its middle in f cos */
 TEST(lunar_full_phase_doubles_and_has_no_limb)
 {
-    struct sr_bsdf b = bsdf_of("lunar reflectance=0.3 porosity=0.4 forward=0.2");
+    struct sr_bsdf b = bsdf_of("lunar reflectance=0.3 compaction=0.4 forward=0.2");
     for (double t = 0; t < 85; t += 12) {
         double L = bsdf_value(&b, direction(t, 30), direction(t, 30)) * cos(t * QUADRATURE_PI / 180);
         EXPECT_RELATIVE(L, 0.3 * 2 / (3 * QUADRATURE_PI), 1e-4); // 1e-4: the cusp magnifies rounding of the angle
