@@ -18,6 +18,14 @@ bool sr_trace(const struct sr_scene *scene, const struct sr_ray *ray, struct sr_
     return sr_raycast(scene, ray, hit);
 }
 
+bool sr_trace_bare(const struct sr_scene *scene, const struct sr_ray *ray, struct sr_hit *hit, struct sr_worker *worker)
+{
+    worker->rays += 1;
+    if (SR_UNLIKELY(worker->log))
+        record(worker->log, ray, false);
+    return sr_raycast_bare(scene, ray, hit);
+}
+
 bool sr_unoccluded(const struct sr_scene *scene, const struct sr_point *x, const struct sr_light_sample *s, struct sr_worker *worker)
 {
     struct sr_ray segment = sr_shadow_ray(x, s);

@@ -49,6 +49,7 @@ struct sr_integrator {
 
 /* raycast and visible, counted and recorded. */
 bool sr_trace(const struct sr_scene *scene, const struct sr_ray *ray, struct sr_hit *hit, struct sr_worker *worker);
+bool sr_trace_bare(const struct sr_scene *scene, const struct sr_ray *ray, struct sr_hit *hit, struct sr_worker *worker);
 bool sr_unoccluded(const struct sr_scene *scene, const struct sr_point *x, const struct sr_light_sample *s, struct sr_worker *worker);
 
 /* The footprint of a sensor ray where it meets a surface: the neighbouring rays, on the tangent plane. */

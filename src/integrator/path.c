@@ -89,7 +89,7 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
     }
 
     for (int bounce = 0;;) {
-        if (!sr_trace(scene, &ray, x, worker)) {
+        if (!(first && bounce == 0 ? sr_trace(scene, &ray, x, worker) : sr_trace_bare(scene, &ray, x, worker))) {
             if (first && bounce == 0)
                 *first = (struct sr_hit){.t = INFINITY};
             return L + beta * escaping(scene, &from->point, pdf, ray.d, w);

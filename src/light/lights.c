@@ -110,7 +110,7 @@ bool sr_lights_pick(const struct sr_lights *lights, const struct sr_point *x, fl
         *index = sr_alias_sample(&c->alias, u, pmf, NULL);
         return *pmf > 0;
     }
-    double v = with_more_bits(u, x->p);
+    double v = c->tree.node_count > 1 ? with_more_bits(u, x->p) : (double)u;
     if (c->outside_count) {
         v /= (double)c->share;
         uint32_t i = (uint32_t)v;

@@ -108,37 +108,27 @@ static inline v8 importance(const struct sr_light_tree_node *b, sr_vec3 p, sr_ve
     return select(can_reach, weight, zero);
 }
 
-typedef double v4d __attribute__((vector_size(32)));
-typedef int64_t v4l __attribute__((vector_size(32)));
-
-// of the weights of the first and the last four children: each, and the sums up to and with each; in double, so that what a
-// child gets is what its probability says
-struct sums {
-    v4d one[2], upto[2];
-};
-
-static inline v4d add_up_four(v4d a)
+// of the weights of the children: the sums up to and with each
+static inline v8 add_up(v8 w)
 {
-    const v4d zero = {0};
-    a += __builtin_shufflevector(zero, a, 0, 4, 5, 6);
-    return a + __builtin_shufflevector(zero, a, 0, 1, 4, 5);
+    const v8 zero = {0};
+    w += __builtin_shufflevector(zero, w, 0, 8, 9, 10, 11, 12, 13, 14);
+    w += __builtin_shufflevector(zero, w, 0, 1, 8, 9, 10, 11, 12, 13);
+    return w + __builtin_shufflevector(zero, w, 0, 1, 2, 3, 8, 9, 10, 11);
 }
 
-static inline struct sums add_up(v8 w)
+// the share of child i, exactly as a choice by these sums grants it
+static inline float share(const float upto[WIDTH + 1], unsigned i)
 {
-    struct sums s;
-    s.one[0] = __builtin_convertvector(__builtin_shufflevector(w, w, 0, 1, 2, 3), v4d);
-    s.one[1] = __builtin_convertvector(__builtin_shufflevector(w, w, 4, 5, 6, 7), v4d);
-    s.upto[0] = add_up_four(s.one[0]);
-    s.upto[1] = add_up_four(s.one[1]) + s.upto[0][3];
-    return s;
+    return (upto[i + 1] - upto[i]) / upto[WIDTH];
 }
 
 // the number of sums that t has reached, but for the last
-static inline unsigned count_reached(const struct sums *s, double t)
+static inline unsigned count_reached(v8 upto, float t)
 {
-    v4l reached = (s->upto[0] <= t) + (s->upto[1] <= t); // -1 for each
-    reached += __builtin_shufflevector(reached, reached, 2, 3, 0, 1);
+    v8i reached = upto <= t; // -1 for each
+    reached += __builtin_shufflevector(reached, reached, 4, 5, 6, 7, 0, 1, 2, 3);
+    reached += __builtin_shufflevector(reached, reached, 2, 3, 0, 1, 6, 7, 4, 5);
     unsigned n = (unsigned)-(reached[0] + reached[1]);
     return n < WIDTH - 1 ? n : WIDTH - 1;
 }
@@ -155,21 +145,21 @@ bool sr_light_tree_pick(const struct sr_light_tree *tree, sr_vec3 p, sr_vec3 ns,
     uint32_t at = 0;
     for (;;) {
         const struct sr_light_tree_node *node = &tree->nodes[at];
-        struct sums s = add_up(importance(node, p, ns, has_normal));
-        const double *one = (const double *)s.one, *upto = (const double *)s.upto;
-        double all = s.upto[1][3], t = u * all;
-        if (!(all > 0))
+        v8 sums = add_up(importance(node, p, ns, has_normal));
+        float upto[WIDTH + 1] = {0}, t = (float)(u * (double)sums[WIDTH - 1]);
+        __builtin_memcpy(upto + 1, &sums, sizeof sums);
+        if (!(sums[WIDTH - 1] > 0))
             return false;
-        unsigned i = count_reached(&s, t); // counted, since branches would be mispredicted
-        while (SR_UNLIKELY(!(one[i] > 0))) // rounding led past the last
+        unsigned i = count_reached(sums, t); // counted, since branches would be mispredicted
+        while (SR_UNLIKELY(!(upto[i + 1] > upto[i]))) // rounding led past the last
             --i;
-        probability *= (float)(one[i] / all);
+        probability *= share(upto, i);
         if (node->child[i] & SR_LIGHT_TREE_LEAF) { // nothing is left to choose
             *index = node->child[i] & ~SR_LIGHT_TREE_LEAF;
             *pmf = probability;
             return probability > 0;
         }
-        u = (t - (upto[i] - one[i])) / one[i];
+        u = (u * (double)sums[WIDTH - 1] - (double)upto[i]) / (double)(upto[i + 1] - upto[i]);
         u = u < 0 ? 0 : u < 0x1.fffffffffffffp-1 ? u : 0x1.fffffffffffffp-1;
         at = node->child[i];
     }
@@ -181,11 +171,12 @@ float sr_light_tree_pmf(const struct sr_light_tree *tree, sr_vec3 p, sr_vec3 ns,
     float probability = 1;
     while (place != SR_LIGHT_TREE_NOWHERE) {
         const struct sr_light_tree_node *node = &tree->nodes[place / WIDTH];
-        struct sums s = add_up(importance(node, p, ns, has_normal));
-        double one = ((const double *)s.one)[place % WIDTH];
-        if (!(one > 0))
+        v8 sums = add_up(importance(node, p, ns, has_normal));
+        float upto[WIDTH + 1] = {0};
+        __builtin_memcpy(upto + 1, &sums, sizeof sums);
+        if (!(upto[place % WIDTH + 1] > upto[place % WIDTH]))
             return 0;
-        probability *= (float)(one / s.upto[1][3]);
+        probability *= share(upto, place % WIDTH);
         place = node->parent;
     }
     return probability;

@@ -93,4 +93,5 @@ const struct sr_material_model sr_material_coated_conductor = {
     .size = sizeof(struct coated_conductor),
     .prepare = prepare,
     .bsdf = bsdf,
+    .is_isotropic = true,
 };

@@ -72,4 +72,5 @@ const struct sr_material_model sr_material_coated_diffuse = {
     .size = sizeof(struct coated_diffuse),
     .prepare = prepare,
     .bsdf = bsdf,
+    .is_isotropic = true,
 };

@@ -46,4 +46,5 @@ const struct sr_material_model sr_material_conductor = {
     .size = sizeof(struct conductor),
     .prepare = prepare,
     .bsdf = bsdf,
+    .is_isotropic = true,
 };

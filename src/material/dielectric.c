@@ -45,4 +45,5 @@ const struct sr_material_model sr_material_dielectric = {
     .size = sizeof(struct dielectric),
     .prepare = prepare,
     .bsdf = bsdf,
+    .is_isotropic = true,
 };

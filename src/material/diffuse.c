@@ -34,4 +34,5 @@ const struct sr_material_model sr_material_diffuse = {
     .size = sizeof(struct diffuse),
     .prepare = prepare,
     .bsdf = bsdf,
+    .is_isotropic = true,
 };

@@ -40,4 +40,5 @@ const struct sr_material_model sr_material_diffuse_transmission = {
     .size = sizeof(struct diffuse_transmission),
     .prepare = prepare,
     .bsdf = bsdf,
+    .is_isotropic = true,
 };

@@ -31,6 +31,7 @@ struct sr_material_model {
     size_t size;
     sr_status (*prepare)(void *self, struct sr_arena *arena, struct sr_error *error); // may be NULL
     void (*bsdf)(const void *self, const struct sr_material_context *c, struct sr_bsdf *out);
+    bool is_isotropic; // unless it has a roughness of its own along the tangent: "uroughness" or "vroughness" in a name
     /* mix: the part that is here, and what is left of the uniform number; NULL for all others */
     const struct sr_material *(*choose)(const void *self, struct sr_material_context *c);
 };
@@ -43,6 +44,9 @@ sr_status sr_material_prepare(const struct sr_material_model *model, void *self,
 
 /* Whether anything of the material may look at the footprint of a point: a texture that is not constant, or a bump map. */
 bool sr_material_has_footprint(const struct sr_material *material);
+
+/* Whether it looks at no more of a point than p, n and ns: no texture, no map, no preferred tangent. */
+bool sr_material_is_plain(const struct sr_material *material);
 
 /* The BSDF at x and the frame it lives in: applies mix, bump and normal map (which turn x->ns, x->dpdus), then asks the
  * model. out->model NULL: interface. */

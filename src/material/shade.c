@@ -98,7 +98,7 @@ static inline struct sr_frame frame_at(const struct sr_point *x)
 {
     sr_vec3 z = x->ns, across = on_tangent_plane(x->dpdus, z);
     float length2 = sr_length2(across);
-    if (SR_UNLIKELY(!(length2 > 1e-10f * sr_length2(x->dpdus)) || !(length2 < INFINITY)))
+    if (!(length2 > 1e-10f * sr_length2(x->dpdus)) || SR_UNLIKELY(!(length2 < INFINITY))) // no tangent: plain surfaces
         return sr_frame_from_z(z);
     sr_vec3 t = sr_scale(1 / sqrtf(length2), across);
     return (struct sr_frame){
@@ -121,6 +121,22 @@ bool sr_material_has_footprint(const struct sr_material *material)
             return true;
     }
     return false;
+}
+
+bool sr_material_is_plain(const struct sr_material *material)
+{
+    if (!material || !material->model)
+        return true;
+    if (!material->model->is_isotropic || material->normal_map.width > 0 || sr_material_has_footprint(material))
+        return false;
+    for (const struct sr_param *p = material->model->params; p && p->name; ++p) {
+        struct sr_texture t = {NULL, NULL};
+        if (p->kind == SR_PARAM_FLOAT_TEXTURE && (strstr(p->name, "uroughness") || strstr(p->name, "vroughness")))
+            memcpy(&t, (const char *)material->self + p->offset, sizeof t);
+        if (t.model)
+            return false;
+    }
+    return true;
 }
 
 void sr_material_shade(const struct sr_material *material, struct sr_point *x, sr_vec3 wo, float u, uint32_t seed,

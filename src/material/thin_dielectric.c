@@ -41,4 +41,5 @@ const struct sr_material_model sr_material_thin_dielectric = {
     .size = sizeof(struct thin_dielectric),
     .prepare = prepare,
     .bsdf = bsdf,
+    .is_isotropic = true,
 };

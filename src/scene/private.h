@@ -13,9 +13,11 @@ struct placed_shape {
     const struct sr_material *material;
     struct sr_texture alpha;
     uint32_t first_light;     // SR_NO_LIGHT: dark
+    uint32_t per_light;       // primitives that make one light
     uint32_t number;          // from 1, in the order of description
     uint32_t material_number; // from 1; 0: interface
     bool has_footprint;       // its material looks at footprints
+    bool is_plain;            // neither its material nor its light looks at more than p, n and ns
     bool is_mesh;             // of triangles, which Embree meets itself
 };
 

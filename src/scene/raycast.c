@@ -33,7 +33,7 @@ static void to_world(struct sr_point *x, const struct sr_transform *t)
     x->dndv = sr_transform_normal(t, x->dndv);
 }
 
-bool sr_raycast(const struct sr_scene *scene, const struct sr_ray *ray, struct sr_hit *hit)
+static inline bool raycast(const struct sr_scene *scene, const struct sr_ray *ray, bool bare, struct sr_hit *hit)
 {
     struct RTCRayHit rh;
     fill_ray(&rh.ray, ray->o, ray->d, ray->time, ray->t_max);
@@ -48,17 +48,32 @@ bool sr_raycast(const struct sr_scene *scene, const struct sr_ray *ray, struct s
     const struct instance *instance = rh.hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? NULL : &scene->instances[rh.hit.instID[0] - scene->first_instance];
     const struct object *object = instance ? instance->object : scene->world;
     const struct placed_shape *s = &object->shapes[rh.hit.geomID];
-    s->shape.model->point(s->shape.self, rh.hit.primID, (sr_vec2){rh.hit.u, rh.hit.v}, &hit->point);
+    if (bare && s->is_plain && !instance && s->shape.model->bare_point) {
+        s->shape.model->bare_point(s->shape.self, rh.hit.primID, (sr_vec2){rh.hit.u, rh.hit.v}, &hit->point);
+        hit->point.dpdus = (sr_vec3){0, 0, 0};
+    } else {
+        s->shape.model->point(s->shape.self, rh.hit.primID, (sr_vec2){rh.hit.u, rh.hit.v}, &hit->point);
+    }
     hit->point.time = ray->time;
-    if (instance)
+    if (SR_UNLIKELY(instance))
         to_world(&hit->point, &instance->object_to_world);
     hit->t = rh.ray.tfar;
     hit->material = s->material;
-    hit->light = s->first_light == SR_NO_LIGHT ? SR_NO_LIGHT : s->first_light + rh.hit.primID;
+    hit->light = s->first_light == SR_NO_LIGHT ? SR_NO_LIGHT : s->first_light + (s->per_light == 2 ? rh.hit.primID / 2 : rh.hit.primID);
     hit->object = s->number;
     hit->material_number = s->material_number;
     hit->has_footprint = s->has_footprint;
     return true;
+}
+
+bool sr_raycast(const struct sr_scene *scene, const struct sr_ray *ray, struct sr_hit *hit)
+{
+    return raycast(scene, ray, false, hit);
+}
+
+bool sr_raycast_bare(const struct sr_scene *scene, const struct sr_ray *ray, struct sr_hit *hit)
+{
+    return raycast(scene, ray, true, hit);
 }
 
 struct sr_ray sr_shadow_ray(const struct sr_point *x, const struct sr_light_sample *s)

@@ -113,10 +113,22 @@ static uint32_t number_material(struct sr_scene *scene, const struct sr_material
     return (uint32_t)scene->material_list.count;
 }
 
-/* One light for each primitive of a glowing shape. */
-static uint32_t add_area_lights(struct sr_scene *scene, const struct sr_shape_def *def, bool is_ghost)
+/* One light for each primitive of a glowing shape, or for each pair of triangles that makes a parallelogram: *per_light. */
+static uint32_t add_area_lights(struct sr_scene *scene, const struct sr_shape_def *def, bool is_ghost, uint32_t *per_light)
 {
-    uint32_t n = def->shape.model->primitive_count(def->shape.self);
+    struct sr_shape shape = def->shape;
+    struct sr_shape_patches joined;
+    *per_light = 1;
+    if (shape.model == &sr_shape_trianglemesh && !def->emission->texels.width &&
+        sr_shape_join_triangles(shape.self, &scene->arena, &joined, &scene->error)) {
+        shape = (struct sr_shape){&sr_shape_bilinearmesh, sr_arena_copy(&scene->arena, &joined, sizeof joined)};
+        *per_light = 2;
+    }
+    if (!shape.self) {
+        no_memory(scene);
+        return SR_NO_LIGHT;
+    }
+    uint32_t n = shape.model->primitive_count(shape.self);
     uint32_t first = (uint32_t)scene->light_defs.count;
     struct sr_light_area *areas = sr_arena_alloc(&scene->arena, (size_t)n * sizeof *areas);
     if (!areas || !sr_array_reserve(&scene->light_defs, first + (size_t)n, sizeof(struct sr_light))) {
@@ -124,8 +136,8 @@ static uint32_t add_area_lights(struct sr_scene *scene, const struct sr_shape_de
         return SR_NO_LIGHT;
     }
     for (uint32_t i = 0; i < n; ++i) {
-        areas[i] = (struct sr_light_area){.shape = def->shape, .primitive = i, .emission = def->emission,
-                                          .area = def->shape.model->area(def->shape.self, i), .is_ghost = is_ghost};
+        areas[i] = (struct sr_light_area){.shape = shape, .primitive = i, .emission = def->emission,
+                                          .area = shape.model->area(shape.self, i), .is_ghost = is_ghost};
         sr_scene_add_light(scene, (struct sr_light){&sr_light_area, &areas[i]});
     }
     return first;
@@ -147,7 +159,7 @@ static void place_shapes(struct sr_scene *scene, struct object *object, bool is_
         float alpha = 1;
         bool is_invisible = def->alpha.model && sr_texture_is_constant_float(def->alpha, &alpha) && alpha <= 0;
         bool has_light = def->emission && is_world;
-        uint32_t first_light = has_light ? add_area_lights(scene, def, is_invisible) : SR_NO_LIGHT;
+        uint32_t per_light = 1, first_light = has_light ? add_area_lights(scene, def, is_invisible, &per_light) : SR_NO_LIGHT;
         uint32_t n = def->shape.model->primitive_count(def->shape.self);
         bool is_mesh = def->shape.model == &sr_shape_trianglemesh;
         *(is_mesh ? &scene->counts.triangles : def->shape.model == &sr_shape_bilinearmesh ? &scene->counts.patches : &scene->counts.quadrics) += n;
@@ -155,9 +167,10 @@ static void place_shapes(struct sr_scene *scene, struct object *object, bool is_
         if (n == 0 || is_invisible || (material_number == 0 && !has_light))
             continue;
         object->shapes[object->shape_count++] = (struct placed_shape){
-            .shape = def->shape, .material = material_number ? def->material : NULL, .first_light = first_light, .number = number,
+            .shape = def->shape, .material = material_number ? def->material : NULL, .first_light = first_light, .per_light = per_light, .number = number,
             .alpha = def->alpha.model && !(sr_texture_is_constant_float(def->alpha, &alpha) && alpha >= 1) ? def->alpha : (struct sr_texture){0},
-            .material_number = material_number, .has_footprint = material_number && sr_material_has_footprint(def->material), .is_mesh = is_mesh};
+            .material_number = material_number, .has_footprint = material_number && sr_material_has_footprint(def->material), .is_mesh = is_mesh,
+            .is_plain = sr_material_is_plain(material_number ? def->material : NULL) && !(has_light && def->emission->texels.width)};
         scene->has_footprints |= object->shapes[object->shape_count - 1].has_footprint;
     }
     sr_array_free(&object->defs);

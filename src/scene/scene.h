@@ -51,6 +51,9 @@ struct sr_hit {
 
 /* The ray-casting operator: the nearest surface point along the ray. false: the ray escapes. */
 bool sr_raycast(const struct sr_scene *scene, const struct sr_ray *ray, struct sr_hit *hit);
+/* The same, where nobody but the material and the light of the surface looks at the point: what they do not look at is not
+ * computed, and there is no tangent (dpdus 0) where they need none. */
+bool sr_raycast_bare(const struct sr_scene *scene, const struct sr_ray *ray, struct sr_hit *hit);
 /* The visibility function V between x and the point (or, at infinite distance, the direction) of a light sample. */
 bool sr_visible(const struct sr_scene *scene, const struct sr_point *x, const struct sr_light_sample *s);
 /* The same in two steps: the segment (direction not of unit length, t from 0 to t_max), and whether it is free. */

@@ -341,17 +341,15 @@ static void point(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_p
 }
 
 /* Whether the patch is drawn by solid angle as seen from p, and with which density [1/sr]. The same in sample and pdf. */
-static bool by_solid_angle(const struct sr_shape_patches *m, uint32_t primitive, const sr_vec3 v[4], sr_vec3 p,
-                           float *pdf)
+static inline bool by_solid_angle(const struct sr_shape_patches *m, uint32_t primitive, const sr_vec3 v[4], sr_vec3 p,
+                                  float *pdf)
 {
     if (m->kinds[primitive] != RECTANGLE)
         return false;
-    float nearest2 = INFINITY;
-    for (int i = 0; i < 4; ++i)
-        nearest2 = sr_min(nearest2, sr_length2(sr_sub(v[i], p)));
-    if (sr_length2(sr_sub(v[3], v[0])) < small_extent2 * nearest2)
+    float a2 = sr_length2(sr_sub(v[0], p)), b2 = sr_length2(sr_sub(v[1], p)), c2 = sr_length2(sr_sub(v[2], p)), d2 = sr_length2(sr_sub(v[3], p));
+    if (sr_length2(sr_sub(v[3], v[0])) < small_extent2 * sr_min(sr_min(a2, b2), sr_min(c2, d2)))
         return false;
-    sr_spherical_rectangle_sample(p, v[0], sr_sub(v[1], v[0]), sr_sub(v[2], v[0]), (sr_vec2){0.5f, 0.5f}, pdf);
+    *pdf = sr_spherical_rectangle_pdf(p, v[0], sr_sub(v[1], v[0]), sr_sub(v[2], v[0]));
     return *pdf * min_solid_angle < 1 && *pdf * max_solid_angle > 1;
 }
 

@@ -116,6 +116,14 @@ void sr_quadric_surface(const struct sr_shape_quadric *q, const struct sr_quadri
     x->face = 0;
 }
 
+void sr_quadric_bare_surface(const struct sr_shape_quadric *q, sr_dvec3 p, sr_dvec3 n, struct sr_point *x)
+{
+    x->p = sr_dround(sr_affine(q->to_world, p, 1));
+    x->p_error = rounding(q, p, x->p);
+    sr_dvec3 s = to_world_normal(q, n);
+    x->n = x->ns = sr_dround(sr_dscale(1 / sqrt(sr_ddot(s, s)), s));
+}
+
 double sr_quadric_area_scale(const struct sr_shape_quadric *q, sr_dvec3 n)
 {
     sr_dvec3 s = to_world_normal(q, n);

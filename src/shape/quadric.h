@@ -49,6 +49,8 @@ struct sr_box sr_quadric_box(const struct sr_shape_quadric *q, sr_dvec3 centre, 
 struct sr_box sr_quadric_box_outward(sr_dvec3 lo, sr_dvec3 hi);
 
 void sr_quadric_surface(const struct sr_shape_quadric *q, const struct sr_quadric_point *o, struct sr_point *x);
+/* p, p_error, n and ns alone, of the point p with normal n in object space. */
+void sr_quadric_bare_surface(const struct sr_shape_quadric *q, sr_dvec3 p, sr_dvec3 n, struct sr_point *x);
 /* World area over object area where the object's unit normal is n: |det| |M^-T n|. */
 double sr_quadric_area_scale(const struct sr_shape_quadric *q, sr_dvec3 n);
 /* Fills s from a point drawn with density pdf_object by area in object space [1/m^2]; false if it cannot be used. */

@@ -39,6 +39,8 @@ struct sr_shape_model {
     bool (*intersect)(const void *self, uint32_t primitive, sr_vec3 o, sr_vec3 d, float t_min, float t_max, float *t, sr_vec2 *hit);
     /* The surface at a hit; p is found from the hit, not from t, so that p_error is small. time and footprint are the caller's. */
     void (*point)(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_point *x);
+    /* The same for surfaces without texture and tangent: p, p_error, n and ns alone. NULL: point serves. */
+    void (*bare_point)(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_point *x);
     sr_vec2 (*uv)(const void *self, uint32_t primitive, sr_vec2 hit); // texture coordinates alone, for alpha tests
 
     /* A point on the primitive for light that arrives at reference; NULL reference: by area. false: none. */
@@ -83,6 +85,11 @@ struct sr_shape_patches {
  * as one, by solid angle. Returns the number of patches moved; UINT32_MAX: no memory. Indices must be in range. */
 uint32_t sr_shape_split_planar_quads(const struct sr_shape_patches *patches, struct sr_arena *arena,
                                      struct sr_shape_mesh *triangles, struct sr_shape_patches *rest);
+
+/* The other way, for lights: whether the prepared mesh consists of parallelograms, triangles 2 i and 2 i + 1 being the halves
+ * of one, without N; then patch i is the same surface, prepared, with the same outside, but without uv. */
+bool sr_shape_join_triangles(const struct sr_shape_mesh *triangles, struct sr_arena *arena, struct sr_shape_patches *patches,
+                             struct sr_error *error);
 
 /* ---- quadrics ----
  * They live in object space in double and are placed by an affine transform. Outside is away from the axis or centre (disk:

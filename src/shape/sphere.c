@@ -200,6 +200,14 @@ static void point(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_p
     sr_quadric_surface(&s->quadric, &o, x);
 }
 
+static void bare_point(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_point *x)
+{
+    (void)primitive;
+    const struct sr_shape_sphere *s = self;
+    sr_dvec3 n = direction(hit);
+    sr_quadric_bare_surface(&s->quadric, sr_dscale((double)s->radius, n), n, x);
+}
+
 static sr_vec2 uv(const void *self, uint32_t primitive, sr_vec2 hit)
 {
     (void)primitive;
@@ -290,6 +298,7 @@ const struct sr_shape_model sr_shape_sphere = {
     .area = area,
     .intersect = intersect,
     .point = point,
+    .bare_point = bare_point,
     .uv = uv,
     .sample = sample,
     .pdf = pdf,

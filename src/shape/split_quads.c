@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Parallelograms to triangles, where nothing of the surface changes by it.
+/* Parallelograms to triangles and back, where nothing of the surface changes by it.
  *
  * With p11 = p10 + p01 - p00 the bilinear p(u, v) is affine, and so it is over each half. The same must hold of uv and N. */
 #include "shape/shape.h"
@@ -87,4 +87,60 @@ uint32_t sr_shape_split_planar_quads(const struct sr_shape_patches *patches, str
     if (stay == 0)
         *rest = (struct sr_shape_patches){0};
     return moved;
+}
+
+static bool is_same(sr_vec3 a, sr_vec3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+/* The corners (0,0) (1,0) (0,1) (1,1) of the parallelogram whose halves are v[0 … 2] and v[3 … 5], wound alike. */
+static bool join_pair(const sr_vec3 v[6], sr_vec3 corner[4])
+{
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+            sr_vec3 a = v[i], b = v[(i + 1) % 3], c = v[(i + 2) % 3], d = v[3 + j];
+            if (!is_same(c, v[3 + (j + 1) % 3]) || !is_same(b, v[3 + (j + 2) % 3]))
+                continue;
+            const sr_vec3 found[4] = {a, b, c, d};
+            static const int32_t order[4] = {0, 1, 2, 3};
+            for (int k = 0; k < 4; ++k)
+                corner[k] = found[k];
+            return is_affine3(found, order, 1e-6f);
+        }
+    return false;
+}
+
+bool sr_shape_join_triangles(const struct sr_shape_mesh *triangles, struct sr_arena *arena, struct sr_shape_patches *patches,
+                             struct sr_error *error)
+{
+    const struct sr_shape_mesh *m = triangles;
+    uint32_t count = m->indices.count / 6;
+    if (m->N.count || count == 0 || m->indices.count != 6 * count)
+        return false;
+    sr_vec3 *P = NULL;
+    int32_t *indices = NULL;
+    for (uint32_t i = 0; i < count; ++i) {
+        sr_vec3 v[6], corner[4];
+        for (int j = 0; j < 6; ++j)
+            v[j] = ((const sr_vec3 *)m->P.data)[((const int32_t *)m->indices.data)[6 * (size_t)i + j]];
+        if (!join_pair(v, corner))
+            return false;
+        if (!P) { // not before the first pair fits
+            P = sr_arena_alloc(arena, 4 * (size_t)count * sizeof *P + 4);
+            indices = sr_arena_alloc(arena, 4 * (size_t)count * sizeof *indices);
+            if (!P || !indices)
+                return false;
+        }
+        for (int j = 0; j < 4; ++j) {
+            P[4 * (size_t)i + j] = corner[j];
+            indices[4 * (size_t)i + j] = (int32_t)(4 * i) + j;
+        }
+    }
+    *patches = (struct sr_shape_patches){.indices = {indices, 4 * count}, .P = {P, 4 * count}};
+    const struct sr_shape_placement here = {.object_to_world = sr_transform_identity()};
+    if (sr_shape_bilinearmesh.prepare(patches, &here, arena, error) != SR_OK)
+        return false;
+    patches->flip_normals = m->flip_normals;
+    return true;
 }

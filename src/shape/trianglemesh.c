@@ -167,6 +167,30 @@ static void point(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_p
     }
 }
 
+static void bare_point(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_point *x)
+{
+    const struct sr_shape_mesh *m = self;
+    const int32_t *c = corners(m, primitive);
+    const sr_vec3 *P = m->P.data;
+    for (int i = 0; m->N.count && i < 3; ++i) // all misses at once
+        __builtin_prefetch((const sr_vec3 *)m->N.data + c[i]);
+    const sr_vec3 v[3] = {P[c[0]], P[c[1]], P[c[2]]};
+    float b1 = hit.x, b2 = hit.y, b0 = 1 - b1 - b2;
+    x->p = sr_add(sr_add(sr_scale(b0, v[0]), sr_scale(b1, v[1])), sr_scale(b2, v[2]));
+    x->p_error = error_bound(v, b0, b1, b2);
+    sr_vec3 n = sr_unit_normal(sr_cross(sr_sub(v[0], v[2]), sr_sub(v[1], v[2])));
+    if (m->N.count) {
+        sr_vec3 s = blend(m->N.data, c, b0, b1, b2);
+        float l2 = sr_dot(s, s);
+        if (SR_LIKELY(l2 > 1e-12f)) {
+            x->ns = sr_scale(1 / sqrtf(l2), s);
+            x->n = sr_scale(copysignf(1, sr_dot(n, x->ns)), n); // no branch to mispredict
+            return;
+        }
+    }
+    x->n = x->ns = sr_scale(m->flip_normals ? -1 : 1, n);
+}
+
 static sr_vec2 uv(const void *self, uint32_t primitive, sr_vec2 hit)
 {
     const struct sr_shape_mesh *m = self;
@@ -315,6 +339,7 @@ const struct sr_shape_model sr_shape_trianglemesh = {
     .bounds = bounds,
     .area = area,
     .point = point,
+    .bare_point = bare_point,
     .uv = uv,
     .sample = sample,
     .pdf = pdf,
