@@ -82,9 +82,59 @@ static sr_spectrum Le(const void *self, const struct sr_point *there, sr_vec3 w,
     return radiance(((const struct sr_light_area *)self)->emission, there->n, there->uv, w, wavelengths);
 }
 
+struct sr_light_area sr_light_area_of(struct sr_shape shape, uint32_t primitive, const struct sr_light_emission *emission, bool is_ghost)
+{
+    struct sr_light_area m = {.shape = shape, .primitive = primitive, .emission = emission, .is_ghost = is_ghost,
+                              .area = shape.model->area(shape.self, primitive)};
+    m.is_flat = !emission->texels.width && m.area > 0 && shape.model->flat && shape.model->flat(shape.self, primitive, &m.flat);
+    if (!m.is_flat)
+        return m;
+    const struct sr_shape_flat *a = &m.flat;
+    sr_vec3 across = sr_sub(a->f, a->e), diagonal = sr_add(a->e, a->f);
+    sr_vec3 largest = {fabsf(a->corner.x) + fabsf(a->e.x) + fabsf(a->f.x), fabsf(a->corner.y) + fabsf(a->e.y) + fabsf(a->f.y),
+                       fabsf(a->corner.z) + fabsf(a->e.z) + fabsf(a->f.z)};
+    float extent = sqrtf(sr_max(sr_length2(across), a->is_triangle ? sr_max(sr_length2(a->e), sr_length2(a->f)) : sr_length2(diagonal)));
+    m.centre = sr_mad(a->corner, a->is_triangle ? 1.0f / 3 : 0.5f, diagonal);
+    m.far2 = sr_sqr(1.5f * extent);
+    m.inverse_area = 1 / m.area;
+    // corner + u e + v f is rounded as often as gamma(8) allows, and once more where it is moved off
+    m.off = 10 * SR_MACHINE_EPSILON * (fabsf(a->n.x) * largest.x + fabsf(a->n.y) * largest.y + fabsf(a->n.z) * largest.z) +
+            2 * SR_MACHINE_EPSILON * sr_max_component(largest) + 1e-37f;
+    return m;
+}
+
+// by area: pdf = r^2 / (A |cos theta|)
+static inline bool sample_flat(const struct sr_light_area *m, sr_vec3 from, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
+{
+    const struct sr_shape_flat *a = &m->flat;
+    if (a->is_triangle)
+        u = sr_warp_triangle(u);
+    sr_vec3 p = sr_mad(sr_mad(a->corner, u.x, a->e), u.y, a->f), d = sr_sub(p, from);
+    float height = sr_dot(a->n, d), r2 = sr_length2(d); // below the surface [m]
+    if (height >= 0 && !m->emission->two_sided) // seen from behind: no spectrum is needed to know
+        return false;
+    float r = sqrtf(r2);
+    if (!(fabsf(height) > 1e-7f * r))
+        return false;
+    s->L = sr_spd_eval(&m->emission->emitted, w->lambda);
+    s->wi = sr_scale(1 / r, d);
+    s->distance = r;
+    s->p = sr_mad(p, height < 0 ? m->off : -m->off, a->n);
+    s->pdf = r2 * r * m->inverse_area / fabsf(height);
+    s->is_delta = m->is_ghost;
+    return s->pdf < INFINITY;
+}
+
+static inline bool looks_small(const struct sr_light_area *m, sr_vec3 from)
+{
+    return m->is_flat && sr_length2(sr_sub(m->centre, from)) > m->far2;
+}
+
 static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
 {
     const struct sr_light_area *m = self;
+    if (looks_small(m, reference->p))
+        return sample_flat(m, reference->p, u, w, s);
     struct sr_shape_sample x;
     if (!m->shape.model->sample(m->shape.self, m->primitive, reference, u, &x) || !(x.pdf > 0) || isinf(x.pdf))
         return false;
@@ -93,10 +143,11 @@ static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u
     if (!(r > 0))
         return false;
     sr_vec3 wi = sr_scale(1 / r, d);
-    if (!m->emission->two_sided && sr_dot(x.n, wi) >= 0) // seen from behind: no spectrum is needed to know
+    if (!m->emission->two_sided && sr_dot(x.n, wi) >= 0)
         return false;
-    *s = (struct sr_light_sample){.L = radiance(m->emission, x.n, x.uv, sr_neg(wi), w), .wi = wi, .distance = r, .p = x.p,
-                                  .p_error = x.p_error, .n = x.n, .pdf = x.pdf, .is_delta = m->is_ghost};
+    struct sr_point there = {.p = x.p, .p_error = x.p_error, .n = x.n};
+    *s = (struct sr_light_sample){.L = radiance(m->emission, x.n, x.uv, sr_neg(wi), w), .wi = wi, .distance = r,
+                                  .p = sr_point_offset(&there, sr_neg(wi)), .pdf = x.pdf, .is_delta = m->is_ghost};
     return !sr_spectrum_is_black(s->L);
 }
 
@@ -105,7 +156,11 @@ static float pdf(const void *self, const struct sr_point *reference, sr_vec3 wi,
     const struct sr_light_area *m = self;
     if (m->is_ghost)
         return 0;
-    return m->shape.model->pdf(m->shape.self, m->primitive, reference, wi, there);
+    if (!looks_small(m, reference->p))
+        return m->shape.model->pdf(m->shape.self, m->primitive, reference, wi, there);
+    sr_vec3 d = sr_sub(there->p, reference->p);
+    float height = fabsf(sr_dot(m->flat.n, d)), r2 = sr_length2(d), r = sqrtf(r2);
+    return height > 1e-7f * r ? r2 * r * m->inverse_area / height : 0;
 }
 
 static float power(const void *self)

@@ -22,7 +22,7 @@ struct sr_light_sample {
     sr_spectrum L;      // radiance [.../sr]; for delta lights I/r^2 or E, and pdf is 1
     sr_vec3 wi;         // [1] toward the light
     float distance;     // [m]; INFINITY for light from outside the scene
-    sr_vec3 p, p_error, n; // [m] [m] [1] where it leaves; n = 0 for lights without surface; unused at INFINITY
+    sr_vec3 p;          // [m] where it leaves, off the light's surface, so that a ray may end there; unused at INFINITY
     float pdf;          // [1/sr]
     bool is_delta;      // no ray meets this light by chance, so that this sample has weight 1 (also area lights that are ghosts)
 };
@@ -68,7 +68,15 @@ struct sr_light_area {
     const struct sr_light_emission *emission; // shared by all primitives of the shape
     float area;                               // [m^2]
     bool is_ghost; // its surface is never met by rays (alpha 0 everywhere): only light sampling finds it, with weight 1
+    // derived by sr_light_area_of: parallelograms and triangles are drawn by area where they look small
+    bool is_flat;
+    struct sr_shape_flat flat;
+    sr_vec3 centre;      // [m]
+    float far2;          // [m^2] squared distance of the centre beyond which it looks small
+    float inverse_area;  // [1/m^2]
+    float off;           // [m] along the normal, beyond all rounding errors of points on it
 };
+struct sr_light_area sr_light_area_of(struct sr_shape shape, uint32_t primitive, const struct sr_light_emission *emission, bool is_ghost);
 /* What AreaLightSource says. Prepared once for a shape (power needs the shape's whole area). */
 struct sr_light_emission {
     struct sr_spd L;    // as given
@@ -114,6 +122,7 @@ struct sr_lights {
     const uint32_t *infinite; // indices of the infinite lights that a ray can escape to: not the distant ones
     uint32_t infinite_count;
     enum sr_light_choice choice;
+    uint32_t only;            // 1 + the index of the one light that can be chosen, or 0 if there are several or none
     const void *tree;         // private: nodes, each light's way to its leaf, alias table
 };
 /* Infinite lights must have been placed before. With SR_LIGHTS_BVH each infinite light has the same share as all others
@@ -122,7 +131,15 @@ sr_status sr_lights_build(struct sr_arena *arena, const struct sr_light *lights,
                           struct sr_lights *out, struct sr_error *error);
 /* Chooses one for a receiver with normal x->ns (zero for volumes); false: none of those looked at can contribute. u is used
  * up. Only x->p and x->ns are read. */
-bool sr_lights_pick(const struct sr_lights *lights, const struct sr_point *x, float u, uint32_t *index, float *pmf);
+bool sr_lights_pick_many(const struct sr_lights *lights, const struct sr_point *x, float u, uint32_t *index, float *pmf);
+static inline bool sr_lights_pick(const struct sr_lights *lights, const struct sr_point *x, float u, uint32_t *index, float *pmf)
+{
+    if (!lights->only)
+        return sr_lights_pick_many(lights, x, u, index, pmf);
+    *index = lights->only - 1;
+    *pmf = 1;
+    return true;
+}
 /* The probability with which pick would have chosen it. */
 float sr_lights_pmf(const struct sr_lights *lights, const struct sr_point *x, uint32_t index);
 

@@ -54,9 +54,9 @@ static sr_status build_choice(struct sr_arena *arena, struct sr_lights *l, struc
         c->outside = sr_arena_copy(arena, outside, c->outside_count * sizeof *outside);
         l->infinite = sr_arena_copy(arena, infinite, infinite_count * sizeof *infinite);
         l->infinite_count = infinite_count;
-        c->choosable = l->choice == SR_LIGHTS_UNIFORM || c->choosable_count == 1
-                           ? sr_arena_copy(arena, choosable, c->choosable_count * sizeof *choosable) : NULL;
-        is_built = c->outside && l->infinite && (c->choosable || (l->choice != SR_LIGHTS_UNIFORM && c->choosable_count != 1));
+        l->only = c->choosable_count == 1 ? choosable[0] + 1 : 0;
+        c->choosable = l->choice == SR_LIGHTS_UNIFORM ? sr_arena_copy(arena, choosable, c->choosable_count * sizeof *choosable) : NULL;
+        is_built = c->outside && l->infinite && (c->choosable || l->choice != SR_LIGHTS_UNIFORM);
     }
     if (is_built && l->choice == SR_LIGHTS_POWER && c->choosable_count > 1)
         is_built = sr_alias_build(arena, weights, n, &c->alias);
@@ -90,16 +90,11 @@ static double with_more_bits(float u, sr_vec3 p)
     return (double)u + ((double)hash + 0.5) * 0x1p-56;
 }
 
-bool sr_lights_pick(const struct sr_lights *lights, const struct sr_point *x, float u, uint32_t *index, float *pmf)
+bool sr_lights_pick_many(const struct sr_lights *lights, const struct sr_point *x, float u, uint32_t *index, float *pmf)
 {
     const struct choice *c = lights->tree;
     if (!c || c->choosable_count == 0)
         return false;
-    *pmf = 1;
-    if (c->choosable_count == 1) {
-        *index = c->choosable[0];
-        return true;
-    }
     if (lights->choice == SR_LIGHTS_UNIFORM) {
         uint32_t i = (uint32_t)(with_more_bits(u, x->p) * c->choosable_count);
         *index = c->choosable[i < c->choosable_count ? i : c->choosable_count - 1];

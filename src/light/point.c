@@ -12,7 +12,7 @@ struct point {
     struct sr_spd I;
     float scale, power;
     sr_vec3 from;
-    sr_vec3 p, p_error;                // derived [m]
+    sr_vec3 p;                         // derived [m]
     float luminous, choice;            // [cd]
 };
 
@@ -31,7 +31,7 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     float luminance = m->scale * (m->power > 0 ? m->power / (4 * SR_PI) : 1);
     if (sr_light_normalise(&m->I, m->common.space, luminance, error))
         return error->status;
-    m->p = sr_transform_point_error(&m->common.light_to_world, m->from, (sr_vec3){0, 0, 0}, &m->p_error);
+    m->p = sr_transform_point(&m->common.light_to_world, m->from);
     if (!sr_is_finite(m->p))
         return sr_fail(error, SR_ERROR_INPUT, "the place of a point light is not finite");
     m->luminous = (float)sr_spd_luminous_integral(&m->I);
@@ -48,7 +48,7 @@ static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u
     if (!(r2 > 0))
         return false;
     *s = (struct sr_light_sample){.L = sr_spd_eval(&m->I, w->lambda) / r2, .wi = sr_scale(1 / r, d), .distance = r,
-                                  .p = m->p, .p_error = m->p_error, .pdf = 1, .is_delta = true};
+                                  .p = m->p, .pdf = 1, .is_delta = true};
     return true;
 }
 

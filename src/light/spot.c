@@ -14,7 +14,7 @@ struct spot {
     struct sr_spd I;
     float scale, power, coneangle, conedeltaangle; // [1] [lm] [deg] [deg]
     sr_vec3 from, to;
-    sr_vec3 p, p_error, axis;        // derived [m] [m] [1]
+    sr_vec3 p, axis;                 // derived [m] [1]
     float start, total;              // [rad]
     float cos_start, cos_total;
     float luminous, choice;          // [cd]
@@ -48,7 +48,7 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     m->cos_start = cosf(m->start);
     m->cos_total = cosf(m->total);
     sr_vec3 axis = sr_transform_vector(&m->common.light_to_world, sr_sub(m->to, m->from));
-    m->p = sr_transform_point_error(&m->common.light_to_world, m->from, (sr_vec3){0, 0, 0}, &m->p_error);
+    m->p = sr_transform_point(&m->common.light_to_world, m->from);
     if (!sr_is_finite(m->p) || !(sr_length2(axis) > 0))
         return sr_fail(error, SR_ERROR_INPUT, "a spot light needs two different points \"from\" and \"to\"");
     m->axis = sr_normalize(axis);
@@ -86,7 +86,7 @@ static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u
     if (share <= 0)
         return false;
     *s = (struct sr_light_sample){.L = sr_spd_eval(&m->I, w->lambda) * (share / r2), .wi = wi, .distance = r,
-                                  .p = m->p, .p_error = m->p_error, .pdf = 1, .is_delta = true};
+                                  .p = m->p, .pdf = 1, .is_delta = true};
     return true;
 }
 

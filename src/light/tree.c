@@ -108,10 +108,15 @@ static inline v8 importance(const struct sr_light_tree_node *b, sr_vec3 p, sr_ve
     return select(can_reach, weight, zero);
 }
 
-// of the weights of the children: the sums up to and with each
+// Of the weights of the children: the sums up to and with each. Whoever has a weight keeps a share that the rounding of the
+// sums cannot take, so that nobody is left out.
 static inline v8 add_up(v8 w)
 {
     const v8 zero = {0};
+    v8 all = w + __builtin_shufflevector(w, w, 4, 5, 6, 7, 0, 1, 2, 3);
+    all += __builtin_shufflevector(all, all, 2, 3, 0, 1, 6, 7, 4, 5);
+    all += __builtin_shufflevector(all, all, 1, 0, 3, 2, 5, 4, 7, 6);
+    w += select(w > 0, all * 0x1p-21f, zero);
     w += __builtin_shufflevector(zero, w, 0, 8, 9, 10, 11, 12, 13, 14);
     w += __builtin_shufflevector(zero, w, 0, 1, 8, 9, 10, 11, 12, 13);
     return w + __builtin_shufflevector(zero, w, 0, 1, 2, 3, 8, 9, 10, 11);

@@ -81,10 +81,7 @@ struct sr_ray sr_shadow_ray(const struct sr_point *x, const struct sr_light_samp
     sr_vec3 o = sr_point_offset(x, s->wi);
     if (isinf(s->distance))
         return (struct sr_ray){.o = o, .d = s->wi, .time = x->time, .t_max = INFINITY};
-    struct sr_point target = {.p = s->p, .p_error = s->p_error, .n = s->n};
-    bool has_surface = s->n.x != 0 || s->n.y != 0 || s->n.z != 0;
-    sr_vec3 to = has_surface ? sr_point_offset(&target, sr_neg(s->wi)) : s->p;
-    return (struct sr_ray){.o = o, .d = sr_sub(to, o), .time = x->time, .t_max = SHADOW_SHARE};
+    return (struct sr_ray){.o = o, .d = sr_sub(s->p, o), .time = x->time, .t_max = SHADOW_SHARE};
 }
 
 bool sr_is_free(const struct sr_scene *scene, const struct sr_ray *ray)

@@ -136,8 +136,7 @@ static uint32_t add_area_lights(struct sr_scene *scene, const struct sr_shape_de
         return SR_NO_LIGHT;
     }
     for (uint32_t i = 0; i < n; ++i) {
-        areas[i] = (struct sr_light_area){.shape = shape, .primitive = i, .emission = def->emission,
-                                          .area = shape.model->area(shape.self, i), .is_ghost = is_ghost};
+        areas[i] = sr_light_area_of(shape, i, def->emission, is_ghost);
         sr_scene_add_light(scene, (struct sr_light){&sr_light_area, &areas[i]});
     }
     return first;

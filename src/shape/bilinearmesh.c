@@ -479,6 +479,17 @@ static void normals(const void *self, uint32_t primitive, sr_vec3 *axis, float *
         *cos_theta = sr_max(-1, narrowest - 1e-5f);
 }
 
+static bool flat(const void *self, uint32_t primitive, struct sr_shape_flat *flat)
+{
+    const struct sr_shape_patches *m = self;
+    sr_vec3 v[4];
+    vertices(m, primitive, v);
+    float cos_theta;
+    *flat = (struct sr_shape_flat){.corner = v[0], .e = sr_sub(v[1], v[0]), .f = sr_sub(v[2], v[0])};
+    normals(self, primitive, &flat->n, &cos_theta);
+    return cos_theta == 1 && (m->kinds[primitive] == RECTANGLE || m->kinds[primitive] == PARALLELOGRAM);
+}
+
 const struct sr_shape_model sr_shape_bilinearmesh = {
     .name = "bilinearmesh",
     .params = params,
@@ -493,4 +504,5 @@ const struct sr_shape_model sr_shape_bilinearmesh = {
     .sample = sample,
     .pdf = pdf,
     .normals = normals,
+    .flat = flat,
 };

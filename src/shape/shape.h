@@ -18,6 +18,13 @@ struct sr_shape_sample {
     float pdf;          // [1/sr] as seen from the reference point; [1/m^2] if there was none
 };
 
+/* A primitive with one normal: p = corner + u e + v f with u, v in 0 … 1, and u + v <= 1 if it is a triangle. */
+struct sr_shape_flat {
+    sr_vec3 corner, e, f; // [m]
+    sr_vec3 n;            // [1] outside
+    bool is_triangle;
+};
+
 struct sr_shape_placement {
     struct sr_transform object_to_world;
     bool reverse_orientation; // as the scene file says; handedness of the transform comes on top
@@ -49,6 +56,8 @@ struct sr_shape_model {
     float (*pdf)(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there);
     /* Cone of the outside normals: axis and cos of its half angle (-1: all directions). */
     void (*normals)(const void *self, uint32_t primitive, sr_vec3 *axis, float *cos_theta);
+    /* Whether it is a triangle or a parallelogram of one normal, and which. NULL: none is. */
+    bool (*flat)(const void *self, uint32_t primitive, struct sr_shape_flat *flat);
 };
 extern const struct sr_shape_model *const sr_shape_models[]; // ends with NULL
 const struct sr_shape_model *sr_shape_model_find(const char *name);

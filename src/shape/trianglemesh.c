@@ -330,6 +330,17 @@ static void normals(const void *self, uint32_t primitive, sr_vec3 *axis, float *
         *cos_theta = -1;
 }
 
+static bool flat(const void *self, uint32_t primitive, struct sr_shape_flat *flat)
+{
+    const struct sr_shape_mesh *m = self;
+    sr_vec3 v[3];
+    vertices(m, primitive, v);
+    float cos_theta;
+    *flat = (struct sr_shape_flat){.corner = v[0], .e = sr_sub(v[1], v[0]), .f = sr_sub(v[2], v[0]), .is_triangle = true};
+    normals(self, primitive, &flat->n, &cos_theta);
+    return cos_theta == 1 && area(self, primitive) > 0;
+}
+
 const struct sr_shape_model sr_shape_trianglemesh = {
     .name = "trianglemesh",
     .params = params,
@@ -344,4 +355,5 @@ const struct sr_shape_model sr_shape_trianglemesh = {
     .sample = sample,
     .pdf = pdf,
     .normals = normals,
+    .flat = flat,
 };
