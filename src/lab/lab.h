@@ -83,6 +83,19 @@ sr_status sr_reflectance_monte_carlo(const struct sr_specimen *specimen, sr_spec
                                      const struct sr_beam *to, uint64_t samples, uint32_t seed,
                                      struct sr_reflectance *out, struct sr_error *error);
 
+/* What an observer sees of it under an illuminant: by cubature at every 5 nm, linear between. */
+struct sr_reflectance_colour {
+    const char *name, *unit; // of the reflectance
+    double luminous;         // [unit] INTEGRAL rho S V / INTEGRAL S V
+    double error;            // [unit] bound of the luminous one, of the cubature alone
+    double xyz[3];           // [1] tristimulus values of the reflectance factor: Y = 1 of the perfect diffuser
+    uint64_t evaluations;
+    bool has_converged;
+};
+sr_status sr_reflectance_colour(const struct sr_specimen *specimen, const struct sr_spd *illuminant,
+                                const struct sr_beam *from, const struct sr_beam *to, double tolerance,
+                                struct sr_reflectance_colour *out, struct sr_error *error);
+
 /* ---- the certificate ---- */
 
 enum sr_verdict {

@@ -25,6 +25,11 @@ void sr_double_f_pdf(const void *bsdf, const double wo[3], const double wi[3], i
                      double *pdf);
 bool sr_double_sample(const void *bsdf, const double wo[3], double u_lobe, const double u[2], int mode,
                       struct twin_sample *s);
-uint32_t sr_double_lobes(const void *bsdf);
+
+/* In single precision's file. A part's own sample, whose f bears the part's weight. */
+struct sr_twin;
+int sr_twin_part_count(const struct sr_twin *twin);
+bool sr_twin_sample(const struct sr_twin *twin, int part, const double wo[3], double u_lobe, const double u[2],
+                    struct twin_sample *s);
 
 #endif

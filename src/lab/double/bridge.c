@@ -77,8 +77,3 @@ bool sr_double_sample(const void *bsdf, const double wo[3], double u_lobe, const
     spread(sample.f, s->f);
     return true;
 }
-
-uint32_t sr_double_lobes(const void *bsdf)
-{
-    return sr_bsdf_lobes(bsdf);
-}

@@ -34,7 +34,8 @@ static struct sr_bsdf defaults(const struct sr_bsdf_model *model)
         void *member = b.data + p->offset;
         sr_spectrum s = SR_BLACK + (float)p->initial;
         for (int i = 0; i < SR_LAMBDA_COUNT; ++i) // a spectrum that is not grey
-            s[i] += (i % 2 ? 0.01f : -0.01f) * (float)i * sr_min((float)(p->max - p->initial), (float)(p->initial - p->min));
+            s[i] += (i % 2 ? 0.01f : -0.01f) * (float)i *
+                    sr_min((float)(p->max - p->initial), (float)(p->initial - p->min));
         if (p->kind == SR_PARAM_FLOAT)
             memcpy(member, &(float){(float)p->initial}, sizeof(float));
         else if (p->kind == SR_PARAM_BOOL)
