@@ -100,7 +100,8 @@ struct sr_bsdf_model {
     X(thin_film_conductor)                                                                                             \
     X(thin_film_dielectric)                                                                                            \
     X(multilayer_conductor)                                                                                            \
-    X(multilayer_dielectric)
+    X(multilayer_dielectric)                                                                                           \
+    X(measured)
 
 #define SR_BSDF_DECLARE(name) extern const struct sr_bsdf_model sr_bsdf_##name;
 SR_BSDF_MODELS(SR_BSDF_DECLARE)
