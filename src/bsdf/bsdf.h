@@ -81,6 +81,9 @@ struct sr_bsdf_model {
     X(phong_modified)                                                                                                  \
     X(blinn_phong)                                                                                                     \
     X(ashikhmin_shirley)                                                                                               \
+    X(lafortune)                                                                                                       \
+    X(strauss)                                                                                                         \
+    X(coupled)                                                                                                         \
     X(lommel_seeliger)                                                                                                 \
     X(lunar)                                                                                                           \
     X(dust)                                                                                                            \

@@ -66,7 +66,7 @@ static inline double bsdf_value(const struct sr_bsdf *b, sr_vec3 wo, sr_vec3 wi)
 /* INTEGRAL f |cos_theta_i| dwi over the side of wo, theta_o < 90 deg: panels of 8 Gauss points, 60 in theta (ends at
  * theta_o, where many models have an edge), 36 in phi on one side of the plane of incidence (ends across it), because the
  * other side is its mirror image. */
-static inline double bsdf_albedo(const struct sr_bsdf *b, double theta_deg, double phi_deg)
+static inline double bsdf_albedo_in(const struct sr_bsdf *b, double theta_deg, double phi_deg, enum sr_transport mode)
 {
     enum { POINTS = 8, RINGS = 60, SECTORS = 36 };
     double x[POINTS], w[POINTS], sum = 0, split = theta_deg > 1 ? theta_deg : 45;
@@ -79,12 +79,17 @@ static inline double bsdf_albedo(const struct sr_bsdf *b, double theta_deg, doub
             double theta = from + width * x[j], ring = 0;
             for (int k = 0; k < SECTORS; ++k)
                 for (int l = 0; l < POINTS; ++l)
-                    ring += w[l] * bsdf_value(b, wo, direction(theta, phi_deg + 180.0 / SECTORS * (k + x[l])));
+                    ring += w[l] * (double)sr_bsdf_f(b, wo, direction(theta, phi_deg + 180.0 / SECTORS * (k + x[l])), mode)[0];
             double t = theta * QUADRATURE_PI / 180;
             sum += w[j] * width * QUADRATURE_PI / 180 * ring * 2 * QUADRATURE_PI / SECTORS * sin(t) * cos(t);
         }
     }
     return sum;
+}
+
+static inline double bsdf_albedo(const struct sr_bsdf *b, double theta_deg, double phi_deg)
+{
+    return bsdf_albedo_in(b, theta_deg, phi_deg, SR_IMPORTANCE);
 }
 
 /* at 0, 30, 60 and 80 deg, to 1e-5 of the value and what the printed digits leave open */

@@ -48,10 +48,54 @@ TEST(ashikhmin_shirley_matte_part_gives_way_to_the_surface)
         EXPECT_NEAR(bsdf_albedo(&with, theta[i], 0) - bsdf_albedo(&without, theta[i], 0), expected[i], 5e-6);
 }
 
+TEST(lafortune_reflects_as_its_equations_integrate)
+{
+    EXPECT_ALBEDO("lafortune reflectance=0 specular=1 c_x=-0.95 c_y=-0.95 c_z=0.85 exponent=10 normalisation=none", 0.103083,
+                  0.117167, 0.113137, 0.065603);
+    struct sr_bsdf b = bsdf_of("lafortune reflectance=0 specular=1 c_x=0.2 c_y=0.1 c_z=0.7 exponent=6 normalisation=none");
+    EXPECT_RELATIVE(bsdf_albedo(&b, 0, 0), 2 * QUADRATURE_PI / 8 * pow(0.7, 6), 1e-5);
+}
+
+TEST(lafortune_can_be_modified_phong_or_a_retroreflector)
+{
+    struct sr_bsdf phong = bsdf_of("phong_modified reflectance=0.1 specular=0.6 exponent=30");
+    struct sr_bsdf mirror = bsdf_of("lafortune reflectance=0.1 specular=0.6 exponent=30 c_x=-1 c_y=-1 c_z=1");
+    struct sr_bsdf back = bsdf_of("lafortune reflectance=0.1 specular=0.6 exponent=30 c_x=1 c_y=1 c_z=1");
+    for (int k = 0; k < 50; ++k) {
+        double to = 7.0 * (k % 10), ti = 15.0 * (k / 10), phi = 31.0 * k; // deg
+        sr_vec3 wo = direction(to, 0), wi = direction(ti, phi), mirrored = {-wi.x, -wi.y, wi.z};
+        EXPECT_RELATIVE(bsdf_value(&mirror, wo, wi), bsdf_value(&phong, wo, wi), 1e-5);
+        EXPECT_RELATIVE(bsdf_value(&back, wo, mirrored), bsdf_value(&phong, wo, wi), 1e-5);
+    }
+}
+
+/* Reflectances were computed for Strauss' own formula without 1 / pi and (e + 1) / (2 pi), under light from everywhere; e = 7.5 */
+TEST(strauss_reflects_as_its_equations_integrate)
+{
+    struct sr_bsdf b = bsdf_of("strauss smoothness=0.6 metalness=0.5 reflectance=0.5");
+    const double theta[] = {0, 30, 60, 80}, raw[] = {0.984005, 0.987423, 0.998235, 0.978896};
+    double diffuse = (1 - 0.5 * 0.6) * (1 - 0.6 * 0.6 * 0.6) * 0.5;
+    for (int i = 0; i < 4; ++i) {
+        double glossy = bsdf_albedo_in(&b, theta[i], 0, SR_RADIANCE) - diffuse;
+        EXPECT_RELATIVE(QUADRATURE_PI * diffuse + glossy * 2 * QUADRATURE_PI / 8.5, raw[i], 1e-5);
+    }
+}
+
+TEST(strauss_is_not_reciprocal_as_documented)
+{
+    struct sr_bsdf b = bsdf_of("strauss smoothness=0.6 metalness=0.5 reflectance=0.5");
+    double asymmetry = bsdf_asymmetry(&b, 20000);
+    EXPECT(asymmetry > 0.8 && asymmetry <= (double)b.model->asymmetry);
+    // but the form for light paths is its adjoint
+    sr_vec3 v = direction(20, 0), w = direction(70, 170);
+    EXPECT_RELATIVE(sr_bsdf_f(&b, v, w, SR_RADIANCE)[0], sr_bsdf_f(&b, w, v, SR_IMPORTANCE)[0], 1e-6);
+    EXPECT(fabs(bsdf_value(&b, v, w) / bsdf_value(&b, w, v) - 1) > 0.1);
+}
+
 TEST(highlights_do_not_care_which_way_light_goes)
 {
     const char *models[] = {"blinn_phong exponent=200", "phong_modified exponent=200",
-                            "ashikhmin_shirley exponent_x=20 exponent_y=300"};
+                            "ashikhmin_shirley exponent_x=20 exponent_y=300", "lafortune exponent=50 c_x=-0.9 c_y=0.5"};
     for (size_t i = 0; i < sizeof models / sizeof models[0]; ++i) {
         struct sr_bsdf b = bsdf_of(models[i]);
         EXPECT(bsdf_asymmetry(&b, 20000) < 1e-4);

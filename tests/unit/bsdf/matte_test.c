@@ -53,10 +53,25 @@ TEST(minnaert_reflects_by_powers_of_the_cosines)
     EXPECT_ALBEDO("minnaert reflectance=0.5555555556 k=0.8", 0.555555555556, 0.57177000498, 0.638165752776, 0.788485023771);
 }
 
+/* with its mirror, which no quadrature sees: E = R + reflectance (1 - R) */
+TEST(coupled_gives_its_matter_what_its_mirror_leaves)
+{
+    struct sr_bsdf b = bsdf_of("coupled reflectance=0.5 specular=0.05"), white = bsdf_of("coupled reflectance=1 specular=0.3");
+    const double theta[] = {0, 30, 60, 80}, expected[] = {0.525000, 0.525021, 0.539844, 0.708028};
+    for (int i = 0; i < 4; ++i) {
+        sr_vec3 wo = direction(theta[i], 40);
+        double R = 0.05 + 0.95 * pow(1 - (double)wo.z, 5);
+        EXPECT_RELATIVE(bsdf_albedo(&b, theta[i], 40) + R, expected[i], 3e-6);
+        EXPECT_RELATIVE(b.model->albedo(b.data, wo)[0], expected[i], 3e-6);
+        EXPECT_RELATIVE(albedo_by_samples(&b, wo, 1, 20000), expected[i], 1e-3);
+        EXPECT_RELATIVE(white.model->albedo(white.data, wo)[0], 1, 1e-6);
+    }
+}
+
 TEST(matte_models_do_not_care_which_way_light_goes)
 {
     const char *models[] = {"oren_nayar sigma=0.7", "oren_nayar variant=qualitative sigma=0.7", "eon roughness=1",
-                            "eon variant=fon roughness=1", "minnaert k=0.6", "minnaert k=2"};
+                            "eon variant=fon roughness=1", "minnaert k=0.6", "minnaert k=2", "coupled"};
     for (size_t i = 0; i < sizeof models / sizeof models[0]; ++i) {
         struct sr_bsdf b = bsdf_of(models[i]);
         EXPECT(bsdf_asymmetry(&b, 20000) < 2e-6);
