@@ -97,6 +97,8 @@ struct sr_bsdf_model {
     X(ward)                                                                                                            \
     X(ward_duer)                                                                                                       \
     X(ward_gmd)                                                                                                        \
+    X(microfacet_dielectric)                                                                                           \
+    X(beckmann_dielectric)                                                                                             \
     X(thin_dielectric)                                                                                                 \
     X(coated_diffuse)                                                                                                  \
     X(coated_conductor)                                                                                                \

@@ -118,7 +118,8 @@ const struct sr_bsdf_model sr_bsdf_cook_torrance = {
     .name = "cook_torrance",
     .title = "Cook and Torrance",
     .source = "R. L. Cook & K. E. Torrance, A reflectance model for computer graphics, 1982",
-    .limits = "Grooves make a crease in f where masking begins; with the constant 1/pi it returns up to 4/pi of the light",
+    .limits =
+        "Grooves make a crease in f where masking begins; with the constant 1/pi it returns up to 4/pi of the light",
     .params = params,
     .size = sizeof(struct cook_torrance),
     .ready = ready,

@@ -102,7 +102,8 @@ const struct sr_bsdf_model sr_bsdf_microfacet = {
     .name = "microfacet",
     .title = "Microfacets, in parts",
     .source = "B. Walter et al., Microfacet models for refraction through rough surfaces, 2007, eq. 20",
-    .limits = "Light that bounces between facets is lost, up to 69 % at alpha = 1; Phong's slopes borrow another's masking",
+    .limits =
+        "Light that bounces between facets is lost, up to 69 % at alpha = 1; Phong's slopes borrow another's masking",
     .params = params,
     .size = sizeof(struct microfacet),
     .lobes = lobes,
