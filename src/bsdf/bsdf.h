@@ -106,7 +106,9 @@ struct sr_bsdf_model {
     X(thin_film_dielectric)                                                                                            \
     X(multilayer_conductor)                                                                                            \
     X(multilayer_dielectric)                                                                                           \
-    X(measured)
+    X(measured)                                                                                                        \
+    X(sheen)                                                                                                           \
+    X(disney)
 
 #define SR_BSDF_DECLARE(name) extern const struct sr_bsdf_model sr_bsdf_##name;
 SR_BSDF_MODELS(SR_BSDF_DECLARE)

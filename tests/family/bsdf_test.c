@@ -86,7 +86,11 @@ static struct sr_bsdf draw(const struct sr_bsdf_model *model, struct sr_rng *rng
                     v = kind < sharp / 2 ? 0 : v * 0.02f;
                 else if (strstr(p->name, "coat_") && kind > 0.5f + sharp / 2)
                     v = 0; // half of the coats are smooth
-            } else if (strcmp(p->name, "thickness") == 0)
+            } else if (strstr(p->text, "square root of the slope"))
+                v = kind < sharp ? v : sqrtf(slope[0]);
+            else if (strstr(p->name, "gloss"))
+                v *= kind < sharp ? 1 : 0.8f;
+            else if (strcmp(p->name, "thickness") == 0)
                 v = powf(10, -2.5f + 3 * uniform(rng));
             else if (strncmp(p->name, "exponent", 8) == 0)
                 v = powf(10, (kind < sharp ? 4 : 1.7f) * uniform(rng)); // else broad enough for quadratures
