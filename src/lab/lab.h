@@ -129,4 +129,54 @@ sr_status sr_certify(const struct sr_specimen *specimen, const struct sr_certifi
 sr_status sr_certify_model(const struct sr_bsdf_model *model, const struct sr_certificate_options *options,
                            struct sr_certificate *out, struct sr_error *error);
 
+/* ---- fitting ---- */
+
+/* How residuals are counted, for g = f |cos theta_i|: the cube root weighs dark and bright parts of a lobe alike as eyes do; the
+ * logarithm counts relative errors (above a thousandth of the mean); linear counts light. */
+enum sr_fit_metric { SR_FIT_CUBE_ROOT, SR_FIT_LOG, SR_FIT_LINEAR };
+
+enum { SR_FIT_PARAMETERS = 64 };
+struct sr_fit_options {
+    sr_spectrum lambda;   // [nm] at which the data is asked; spectra get one value for each of the first
+    int lambda_count;     // of them, 1 … SR_LAMBDA_COUNT; all other parameters are shared
+    uint32_t points;      // pairs of directions
+    uint32_t starts;      // from where the search begins: the given parameters, and others from the table's ranges
+    uint32_t seed;
+    double theta_max;     // [deg] of wi and wo
+    enum sr_fit_metric metric;
+    int fixed_count;
+    const char *const *fixed; // names of parameters that stay as they are
+};
+struct sr_fit_parameter {
+    const char *name, *unit;
+    double lambda;               // [nm] of a value of a spectrum; 0: for all
+    double value;                // [unit]
+    double standard_uncertainty; // [unit] of the residuals' scatter; NaN where the value stands at an end of its range
+    bool is_at_bound;
+};
+struct sr_fit_point {
+    sr_vec3 wo, wi;
+    double data[SR_LAMBDA_COUNT], model[SR_LAMBDA_COUNT]; // [1/sr] f
+};
+struct sr_fit {
+    const struct sr_bsdf_model *model;
+    struct sr_fit_parameter parameters[SR_FIT_PARAMETERS];
+    int count;
+    double degrees_of_freedom; // [1] residuals less parameters
+    double rms;                // [1] of the residuals in the metric, over that of the data
+    double rms_relative;       // [1] of (model - data) |cos theta_i|, over that of the data
+    bool has_converged;
+    const char *words;         // the fitted specimen, to be read by sr_specimen_read
+    const struct sr_fit_point *points;
+    uint32_t point_count;
+};
+/* Pairs of directions where a specimen has data (f above 0), half where its sampler sends light, half over the hemisphere. */
+sr_status sr_fit_gather(struct sr_arena *arena, const struct sr_specimen *data, const struct sr_fit_options *options,
+                        struct sr_fit_point **points, uint32_t *count, struct sr_error *error);
+/* Least squares (Levenberg & Marquardt) of a model of the list to these points, whose model values it fills in. `model` gives
+ * the model, the first starting point and what is fixed; it must have one part of weight 1. Keeps all in the arena. */
+sr_status sr_fit_points(struct sr_arena *arena, struct sr_fit_point *points, uint32_t count,
+                        const struct sr_specimen *model, const struct sr_fit_options *options, struct sr_fit *fit,
+                        struct sr_error *error);
+
 #endif
