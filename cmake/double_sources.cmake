@@ -28,8 +28,8 @@ foreach(name ${inputs})
   foreach(pass 1 2) # twice for neighbours that share a character
     string(REGEX REPLACE "${constant}" "\\1\\2\\5" text "${text}")
   endforeach()
-  # models that read files hold what those say, in floats: they have no twin, only an empty place in the list
-  if(name MATCHES "^bsdf/.*\\.c$" AND text MATCHES "include \"measured/|SR_PARAM_FILE")
+  # models of measured data hold what files say, in floats: they have no twin, only an empty place in the list
+  if(name MATCHES "^bsdf/.*\\.c$" AND text MATCHES "include \"measured/")
     string(REGEX MATCHALL "const struct sr_bsdf_model sr_bsdf_[a-z0-9_]+" models "${text}")
     list(REMOVE_DUPLICATES models)
     string(JOIN ";\n" models ${models})

@@ -42,7 +42,7 @@ void sr_specimen_at(const struct sr_specimen *specimen, sr_spectrum lambda, uint
 /* ---- the same models in double precision ---- */
 
 /* Every model's file is compiled a second time with double in place of float. The twin of a BSDF (of one model, or a sum)
- * has the parameters of its table; *twin is NULL where there is none (models that read files). A parameter is a float; the
+ * has the parameters of its table; *twin is NULL where there is none (measured data). A parameter is a float; the
  * twin has either that number, or the shortest decimal that rounds to it: what somebody has typed. */
 struct sr_twin;
 enum sr_twin_numbers { SR_TWIN_SAME, SR_TWIN_DECIMAL };

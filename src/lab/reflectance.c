@@ -132,8 +132,10 @@ static void integrate(struct task *t, const struct lab_region *region, const dou
         }
         if (alpha < region->half && alpha > 1e-9)
             alphas[1] = alpha;
-        for (c.beta_count = 0; c.beta_count < 5; ++c.beta_count)
-            c.betas[c.beta_count] = beta + M_PI / 2 * c.beta_count;
+        int panels = region->is_hemisphere ? 4 : alpha < region->half ? 2 : 1; // in a cone there are fewer surprises
+        c.beta_count = panels + 1;
+        for (int k = 0; k <= panels; ++k)
+            c.betas[k] = beta + 2 * M_PI / panels * k;
     }
     if (region->is_hemisphere) {
         double u = sqrt(fmax(0, 1 - alphas[1] / (M_PI / 2)));
@@ -404,9 +406,9 @@ static sr_status run(struct task *t, const struct sr_specimen *specimen, uint32_
     return SR_OK;
 }
 
-sr_status sr_reflectance_cubature(const struct sr_specimen *specimen, sr_spectrum lambda, const struct sr_beam *from,
-                                  const struct sr_beam *to, double tolerance, struct sr_reflectance *out,
-                                  struct sr_error *error)
+static sr_status cubature(const struct sr_specimen *specimen, sr_spectrum lambda, const struct sr_beam *from,
+                          const struct sr_beam *to, double tolerance, bool in_double, struct sr_reflectance *out,
+                          struct sr_error *error)
 {
     if (sr_beam_check(from, error) != SR_OK || sr_beam_check(to, error) != SR_OK)
         return error->status;
@@ -419,9 +421,25 @@ sr_status sr_reflectance_cubature(const struct sr_specimen *specimen, sr_spectru
     struct sr_specimen_at at;
     sr_specimen_at(specimen, lambda, 1, &at);
     struct task t = {.bsdf = &at.bsdf, .from = sr_region_of(from), .to = sr_region_of(to)};
-    sr_status status = sr_twin_make(&arena, &at.bsdf, lambda, SR_TWIN_DECIMAL, &t.twin, error);
+    sr_status status = SR_OK;
+    if (in_double)
+        status = sr_twin_make(&arena, &at.bsdf, lambda, SR_TWIN_DECIMAL, &t.twin, error);
     if (status == SR_OK) // floats cannot do better than 1e-6
         status = run(&t, specimen, sr_bsdf_lobes(&at.bsdf), t.twin ? tolerance : fmax(tolerance, 1e-6), out, error);
     sr_arena_free(&arena);
     return status;
+}
+
+sr_status sr_reflectance_cubature(const struct sr_specimen *specimen, sr_spectrum lambda, const struct sr_beam *from,
+                                  const struct sr_beam *to, double tolerance, struct sr_reflectance *out,
+                                  struct sr_error *error)
+{
+    return cubature(specimen, lambda, from, to, tolerance, true, out, error);
+}
+
+sr_status sr_reflectance_cubature_single(const struct sr_specimen *specimen, sr_spectrum lambda,
+                                         const struct sr_beam *from, const struct sr_beam *to, double tolerance,
+                                         struct sr_reflectance *out, struct sr_error *error)
+{
+    return cubature(specimen, lambda, from, to, tolerance, false, out, error);
 }

@@ -2,7 +2,7 @@
 /* A BSDF in double precision: reads the parameters of one in single precision by its model's table, row by row.
  *
  * The same table stands in both compilations, with offsets of its own in each; derived values are made anew from the
- * parameters. Models that read files have no twin, nor has a sum that contains one. */
+ * parameters. Models of measured data have no twin, nor has a sum that contains one. */
 #include "lab/twin.h"
 
 #include "lab/private.h"
@@ -59,6 +59,8 @@ static void read_row(const struct sr_param *p, const unsigned char *data, enum s
         memcpy(&s, member, sizeof s);
         for (int i = 0; i < SR_LAMBDA_COUNT; ++i)
             row->number[i] = number(s[i], numbers);
+    } else if (p->kind == SR_PARAM_FILE) {
+        memcpy(&row->file, member, sizeof row->file);
     } else if (p->kind == SR_PARAM_BOOL) {
         bool flag;
         memcpy(&flag, member, sizeof flag);
@@ -79,7 +81,7 @@ static sr_status make_part(struct sr_arena *arena, const struct sr_bsdf *bsdf, s
         return SR_OK;
     struct twin_row rows[ROWS] = {0};
     for (int i = 0; bsdf->model->params[i].name; ++i) {
-        if (bsdf->model->params[i].kind == SR_PARAM_FILE || i == ROWS)
+        if (i == ROWS)
             return SR_OK;
         read_row(&bsdf->model->params[i], bsdf->data, numbers, &rows[i]);
     }

@@ -10,6 +10,7 @@
 /* One row of a model's table. FLOAT, INT, ENUM and BOOL stand in number[0]. */
 struct twin_row {
     double number[SR_LAMBDA_COUNT];
+    const char *file;
 };
 struct twin_sample {
     double wi[3], f[SR_LAMBDA_COUNT], pdf;

@@ -44,6 +44,8 @@ sr_status sr_double_make(struct sr_arena *arena, int model, const struct twin_ro
             memcpy(member, &(bool){rows[i].number[0] != 0}, sizeof(bool));
         else if (p->kind == SR_PARAM_INT || p->kind == SR_PARAM_ENUM)
             memcpy(member, &(int32_t){(int32_t)rows[i].number[0]}, sizeof(int32_t));
+        else if (p->kind == SR_PARAM_FILE)
+            memcpy(member, &rows[i].file, sizeof rows[i].file);
         else {
             sr_spectrum s = gather(rows[i].number);
             memcpy(member, &s, sizeof s);

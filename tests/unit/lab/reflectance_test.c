@@ -1,39 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Nicodemus' nine reflectances: against published figures, closed forms and each other. */
-#include "lab/lab.h"
-#include "test.h"
-
-#define PI 3.14159265358979324
-
-static struct sr_arena arena;
-
-static struct sr_specimen specimen(const char *words)
-{
-    static char text[20][200];
-    const char *list[20];
-    char copy[400];
-    int count = 0;
-    snprintf(copy, sizeof copy, "%s", words);
-    for (char *w = strtok(copy, " "); w && count < 20; w = strtok(NULL, " ")) {
-        snprintf(text[count], sizeof text[count], "%s", w);
-        list[count] = text[count];
-        ++count;
-    }
-    struct sr_specimen s;
-    struct sr_error error = {0};
-    if (sr_specimen_read(&arena, count, list, &s, (struct sr_log){0}, &error) != SR_OK)
-        test_fail(__FILE__, __LINE__, "%s: %s", words, error.text);
-    return s;
-}
-
-static struct sr_beam beam(const char *text)
-{
-    struct sr_beam b;
-    struct sr_error error = {0};
-    if (sr_beam_read(text, &b, &error) != SR_OK)
-        test_fail(__FILE__, __LINE__, "%s", error.text);
-    return b;
-}
+#include "specimens.h"
 
 static struct sr_reflectance cubature(const char *words, const char *from, const char *to, double tolerance)
 {

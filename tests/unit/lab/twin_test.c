@@ -69,14 +69,14 @@ static bool reads_files(const struct sr_bsdf_model *m)
 TEST(every_model_has_a_twin_that_agrees)
 {
     for (int m = 0; sr_bsdf_models[m]; ++m) {
-        if (reads_files(sr_bsdf_models[m]))
-            continue;
         struct sr_bsdf b = defaults(sr_bsdf_models[m]);
         for (const struct sr_param *p = b.model->params; p->name; ++p)
             if (strstr(p->name, "alpha"))
                 set(&b, p->name, 0.4f);
-        prepare(&b);
         struct sr_error error = {0};
+        if (reads_files(b.model) && b.model->load(b.data, &arena, &error) != SR_OK)
+            continue; // nothing but what a file says
+        prepare(&b);
         const struct sr_twin *twin;
         sr_status status = sr_twin_make(&arena, &b, lambdas(), SR_TWIN_SAME, &twin, &error);
         EXPECT_EQUAL_INT(status, SR_OK);
