@@ -114,7 +114,8 @@ struct sr_check {
 struct sr_certificate {
     struct sr_check checks[24];
     int count;
-    bool passed; // no check failed
+    bool passed;          // no check failed
+    uint64_t evaluations; // of f, pdf or sample, about
 };
 struct sr_certificate_options {
     uint32_t sets;    // parameter sets drawn from the table; 0: only the parameters given

@@ -1,0 +1,413 @@
+/* SPDX-License-Identifier: MIT */
+/* What a certificate finds by looking at pairs of directions: no statistics, each deviation counts.
+ *
+ *     reciprocity         f(a, b) = f(b, a) on one side of the surface                            (Helmholtz)
+ *     adjoint             f(a, b) = f*(b, a) across it, f in the form for radiance, f* for importance (Veach 1997, 5.2)
+ *     support             pdf(a, b) > 0 wherever f(a, b) > 0, or light is lost
+ *
+ * Floats of narrow lobes have few digits: two values that ought to be equal may differ by 0.2 %, or by what f changes when
+ * a direction moves by 4e-7 (a few roundings of its coordinates). What is reported is the excess over that change, as a
+ * share of the larger value. */
+#include "lab/private.h"
+
+#include <string.h>
+
+#define EQUAL 2e-3 // [1] relative deviation between values that ought to be equal
+
+static sr_vec3 moved(sr_vec3 w, float x, float y, float z)
+{
+    return sr_normalize(sr_add(w, (sr_vec3){x, y, z}));
+}
+
+/* What f and pdf change under directions that a few roundings apart: the largest of four movements, fourfold. */
+static void sensitivity(const struct subject *s, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, sr_spectrum *df,
+                        float *dpdf)
+{
+    const float e = 4e-7f;
+    float pdf, p;
+    sr_spectrum f = sr_bsdf_f_pdf(s->b, wo, wi, mode, &pdf);
+    *df = SR_BLACK;
+    *dpdf = 0;
+    for (int i = 0; i < 4; ++i) {
+        float x = i & 1 ? e : -e, y = i & 2 ? e : -e;
+        sr_spectrum g = sr_bsdf_f_pdf(s->b, moved(wo, y, x, -x), moved(wi, x, y, y), mode, &p);
+        for (int k = 0; k < SR_LAMBDA_COUNT; ++k)
+            (*df)[k] = sr_max((*df)[k], 4 * fabsf(g[k] - f[k]));
+        *dpdf = sr_max(*dpdf, 4 * fabsf(p - pdf));
+    }
+}
+
+/* The relative difference of two values beyond the slack; NaN counts as 1. */
+static double apart(float a, float b, float slack)
+{
+    double larger = fmax(fabs((double)a), fabs((double)b)), d = fabs((double)a - (double)b) - (double)slack;
+    return !(d <= 1e30) ? 1 : d > 0 && larger > 1e-12 ? d / larger : 0;
+}
+
+/* ---- numbers that are none, or below 0 ---- */
+
+static void tell_value(struct certifying *c, enum check check, double value, const char *what, sr_vec3 wo, sr_vec3 wi,
+                       int k)
+{
+    char set[100];
+    lab_describe(c->subject, k, set, sizeof set);
+    lab_find(c, check, check == CHECK_NON_NEGATIVE && isfinite(value) ? -value : 1, true,
+             "%s = %.4g at theta_o %.5g, theta_i %.5g deg; %s", what, value, lab_theta_deg(wo), lab_theta_deg(wi), set);
+}
+
+/* One value; true: it is good. */
+static bool look_at(struct certifying *c, enum check finite, enum check negative, double value, const char *what,
+                    sr_vec3 wo, sr_vec3 wi, int k)
+{
+    if (SR_LIKELY(value >= 0 && value < (double)INFINITY))
+        return true;
+    tell_value(c, isfinite(value) ? negative : finite, value, what, wo, wi, k);
+    return false;
+}
+
+static bool look_at_all(struct certifying *c, enum check finite, enum check negative, sr_spectrum f, float pdf,
+                        const char *what_f, const char *what_pdf, sr_vec3 wo, sr_vec3 wi)
+{
+    bool ok = look_at(c, finite, negative, (double)pdf, what_pdf, wo, wi, 0);
+    if (SR_LIKELY(!sr_spectrum_any(~((f >= 0) & (f < INFINITY)))))
+        return ok;
+    for (int k = 0; k < SR_LAMBDA_COUNT; ++k)
+        ok &= look_at(c, finite, negative, (double)f[k], what_f, wo, wi, k);
+    return ok;
+}
+
+bool lab_check_values(struct certifying *c, enum check finite, enum check negative, sr_vec3 wo, sr_vec3 wi)
+{
+    const struct subject *s = c->subject;
+    enum sr_transport mode = lab_u(&c->rng) < 0.5f ? SR_RADIANCE : SR_IMPORTANCE;
+    float pdf;
+    sr_spectrum f = sr_bsdf_f_pdf(s->b, wo, wi, mode, &pdf);
+    c->findings->evaluations += 2;
+    bool ok = look_at_all(c, finite, negative, f, pdf, "f", "pdf", wo, wi);
+    struct sr_bsdf_sample sample;
+    float u = lab_u(&c->rng), kind = lab_u(&c->rng);
+    sr_vec2 square = lab_square(&c->rng);
+    if (kind < 0.05f) // the edges of the square
+        square = (sr_vec2){kind < 0.025f ? 0 : SR_ONE_MINUS_EPSILON, kind < 0.0125f ? 0 : square.y};
+    if (!sr_bsdf_sample(s->b, wo, u, square, mode, &sample))
+        return ok;
+    ok &= look_at_all(c, finite, negative, sample.f, sample.pdf, "a sample's f", "a sample's pdf", wo, sample.wi);
+    if (ok && !(sample.pdf > 0)) {
+        tell_value(c, finite, (double)sample.pdf, "a sample's pdf", wo, sample.wi, 0);
+        ok = false;
+    }
+    if (!sr_is_finite(sample.wi)) {
+        tell_value(c, finite, (double)NAN, "a sample's direction", wo, wo, 0);
+        ok = false;
+    }
+    return ok;
+}
+
+/* ---- laws ---- */
+
+static void check_reciprocity(struct certifying *c, sr_vec3 wo, sr_vec3 wi)
+{
+    const struct subject *s = c->subject;
+    enum check check = wo.z * wi.z < 0 ? CHECK_ADJOINT : CHECK_RECIPROCITY;
+    sr_spectrum f = sr_bsdf_f(s->b, wo, wi, SR_RADIANCE);
+    sr_spectrum g = sr_bsdf_f(s->b, wi, wo, check == CHECK_ADJOINT ? SR_IMPORTANCE : SR_RADIANCE);
+    if (sr_spectrum_is_black(f) && sr_spectrum_is_black(g))
+        return;
+    sr_spectrum slack = SR_BLACK, other;
+    float unused;
+    double worst = 0;
+    int at = 0;
+    for (int pass = 0; pass < 2; ++pass) { // the second time with the slack, where it matters
+        worst = 0;
+        for (int k = 0; k < SR_LAMBDA_COUNT; ++k) {
+            double d = apart(f[k], g[k], slack[k]);
+            if (d > worst) {
+                worst = d;
+                at = k;
+            }
+        }
+        if (worst <= EQUAL || pass)
+            break;
+        sensitivity(s, wo, wi, SR_RADIANCE, &slack, &unused);
+        sensitivity(s, wi, wo, check == CHECK_ADJOINT ? SR_IMPORTANCE : SR_RADIANCE, &other, &unused);
+        slack += other;
+    }
+    char set[90];
+    lab_describe(s, at, set, sizeof set);
+    lab_find(c, check, worst, worst > EQUAL, "f %.5g, reversed %.5g at theta %.4g and %.4g, phi %.4g deg; %s",
+             (double)f[at], (double)g[at], lab_theta_deg(wo), lab_theta_deg(wi), lab_phi_deg(wi) - lab_phi_deg(wo), set);
+}
+
+/* f itself is random: the mean difference over seeds, as deviations of its error. */
+static void check_mean_reciprocity(struct certifying *c, sr_vec3 wo, sr_vec3 wi)
+{
+    struct subject *s = c->subject;
+    enum check check = wo.z * wi.z < 0 ? CHECK_ADJOINT : CHECK_RECIPROCITY;
+    struct sr_tally difference = {0}, sum = {0};
+    for (uint32_t i = 0; i < 4000; ++i) {
+        lab_reseed(s, sr_rng_u32(&c->rng));
+        sr_spectrum f = sr_bsdf_f(s->b, wo, wi, SR_RADIANCE);
+        lab_reseed(s, sr_rng_u32(&c->rng));
+        sr_spectrum g = sr_bsdf_f(s->b, wi, wo, check == CHECK_ADJOINT ? SR_IMPORTANCE : SR_RADIANCE);
+        sr_tally_add(&difference, (double)(sr_spectrum_mean(f) - sr_spectrum_mean(g)));
+        sr_tally_add(&sum, (double)(sr_spectrum_mean(f) + sr_spectrum_mean(g)) / 2);
+    }
+    double error = sr_tally_standard_error(&difference), z = error > 0 ? difference.mean / error : 0;
+    double share = sum.mean > 0 ? fabs(difference.mean) / sum.mean : 0;
+    lab_find(c, check, share, fabs(z) > c->z && share > EQUAL,
+             "means of 4000 walks: %.4g of f = %.4g at theta %.4g and %.4g deg, z = %.2f", difference.mean, sum.mean,
+             lab_theta_deg(wo), lab_theta_deg(wi), z);
+}
+
+/* Purity, f_pdf, and that what shines can be drawn. */
+static void check_agreement(struct certifying *c, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode)
+{
+    const struct subject *s = c->subject;
+    const struct sr_bsdf_model *m = s->b->model;
+    float pdf, again, alone = m->pdf(s->b->data, wo, wi, mode);
+    sr_spectrum f = m->f(s->b->data, wo, wi, mode), both = sr_bsdf_f_pdf(s->b, wo, wi, mode, &pdf);
+    sr_bsdf_f_pdf(s->b, wo, wi, mode, &again);
+    double worst = apart(pdf, alone, 0);
+    if (pdf != again || memcmp(&f, &both, sizeof f) != 0 || pdf != alone) {
+        for (int k = 0; k < SR_LAMBDA_COUNT; ++k)
+            worst = fmax(worst, apart(f[k], both[k], 0));
+        worst = fmax(worst, pdf != again ? 1 : 1e-9);
+    }
+    lab_find(c, CHECK_F_PDF, worst, worst > 0, "f %.6g but f_pdf %.6g; pdf %.6g but f_pdf %.6g at theta %.4g and %.4g deg",
+             (double)f[0], (double)both[0], (double)alone, (double)pdf, lab_theta_deg(wo), lab_theta_deg(wi));
+    float brightest = sr_spectrum_max(f);
+    bool lost = !(pdf > 0) && brightest > 0;
+    char set[90];
+    lab_describe(s, 0, set, sizeof set);
+    lab_find(c, CHECK_SUPPORT, lost ? (double)brightest : 0, lost,
+             "f = %.4g 1/sr but pdf = 0 at theta_o %.4g, theta_i %.4g deg; %s", (double)brightest, lab_theta_deg(wo),
+             lab_theta_deg(wi), set);
+}
+
+/* ---- samples ---- */
+
+static const char *wrong_lobe(const struct subject *s, sr_vec3 wo, const struct sr_bsdf_sample *sample)
+{
+    bool crosses = wo.z * sample->wi.z < 0, transmits = (sample->lobe & SR_LOBE_TRANSMISSION) != 0;
+    bool reflects = (sample->lobe & SR_LOBE_REFLECTION) != 0;
+    uint32_t kind = sample->lobe & (SR_LOBE_DIFFUSE | SR_LOBE_GLOSSY | SR_LOBE_SPECULAR);
+    if (sample->lobe & ~sr_bsdf_lobes(s->b))
+        return "a sample is of a lobe that lobes() does not tell";
+    if (transmits == reflects)
+        return "a sample is of both reflection and transmission, or of neither";
+    if (transmits != crosses)
+        return crosses ? "a sample on the other side is called a reflection"
+                       : "a sample on the same side is called a transmission";
+    if (!kind || (kind & (kind - 1)))
+        return "a sample is not of just one of diffuse, glossy and specular";
+    if (reflects && sample->eta != 1)
+        return "a reflection has a relative index other than 1";
+    return NULL;
+}
+
+/* A delta lobe in both forms: radiance is compressed by eta^2 where light goes on in another medium. */
+static void check_delta_adjoint(struct certifying *c, sr_vec3 wo, float u, sr_vec2 square,
+                                const struct sr_bsdf_sample *radiance)
+{
+    struct sr_bsdf_sample other;
+    if (!(radiance->lobe & SR_LOBE_TRANSMISSION) || !sr_bsdf_sample(c->subject->b, wo, u, square, SR_IMPORTANCE, &other))
+        return;
+    double worst = 0, eta2 = (double)radiance->eta * (double)radiance->eta;
+    for (int k = 0; k < SR_LAMBDA_COUNT; ++k)
+        if (other.f[k] > 0 || radiance->f[k] > 0)
+            worst = fmax(worst, apart((float)((double)radiance->f[k] * eta2 / (double)radiance->pdf),
+                                      other.f[k] / other.pdf, 0));
+    lab_find(c, CHECK_ADJOINT, worst, worst > EQUAL,
+             "a refraction's weight times eta^2 = %.5g is not its weight for importance, at theta %.4g deg", eta2,
+             lab_theta_deg(wo));
+}
+
+static void check_sample(struct certifying *c, sr_vec3 wo, enum check check)
+{
+    const struct subject *s = c->subject;
+    struct sr_bsdf_sample sample, again;
+    enum sr_transport mode = lab_u(&c->rng) < 0.5f ? SR_RADIANCE : SR_IMPORTANCE;
+    float u = lab_u(&c->rng);
+    sr_vec2 square = lab_square(&c->rng);
+    ++c->findings->evaluations;
+    if (!sr_bsdf_sample(s->b, wo, u, square, mode, &sample))
+        return;
+    char set[90];
+    lab_describe(s, 0, set, sizeof set);
+    double length = fabs((double)sr_length(sample.wi) - 1);
+    if (!(length < 1e-5))
+        lab_find(c, check, length, true, "a sampled direction has the length 1 %+.3g; %s", length, set);
+    const char *wrong = wrong_lobe(s, wo, &sample);
+    lab_find(c, CHECK_LOBES, wrong ? 1 : 0, wrong != NULL, "%s; %s", wrong ? wrong : "all samples are of lobes told", set);
+    bool same = sr_bsdf_sample(s->b, wo, u, square, mode, &again) && again.pdf == sample.pdf &&
+                memcmp(&again.wi, &sample.wi, sizeof again.wi) == 0;
+    if (!same)
+        lab_find(c, check, 1, true, "the same numbers draw another sample; %s", set);
+    float pdf;
+    sr_spectrum f = sr_bsdf_f_pdf(s->b, wo, sample.wi, mode, &pdf);
+    if (sample.lobe & SR_LOBE_SPECULAR) {
+        if (mode == SR_RADIANCE)
+            check_delta_adjoint(c, wo, u, square, &sample);
+        return;
+    }
+    if (sample.pdf_is_proportional)
+        return;
+    float dpdf = 0;
+    sr_spectrum df = SR_BLACK;
+    double of_pdf = apart(sample.pdf, pdf, 0), of_f = 0;
+    int at = 0;
+    for (int pass = 0; pass < 2; ++pass) {
+        of_f = 0;
+        for (int k = 0; k < SR_LAMBDA_COUNT && !s->is_random; ++k) {
+            double d = apart(sample.f[k], f[k], df[k]);
+            if (d > of_f) {
+                of_f = d;
+                at = k;
+            }
+        }
+        of_pdf = apart(sample.pdf, pdf, dpdf);
+        if ((of_f <= EQUAL && of_pdf <= EQUAL) || pass)
+            break;
+        sensitivity(s, wo, sample.wi, mode, &df, &dpdf);
+    }
+    bool by_pdf = of_pdf > of_f;
+    lab_find(c, check, fmax(of_f, of_pdf), fmax(of_f, of_pdf) > EQUAL,
+             "a sample's %s = %.6g, but %s() = %.6g at theta_o %.4g, theta_i %.4g deg; %s", by_pdf ? "pdf" : "f",
+             (double)(by_pdf ? sample.pdf : sample.f[at]), by_pdf ? "pdf" : "f", (double)(by_pdf ? pdf : f[at]),
+             lab_theta_deg(wo), lab_theta_deg(sample.wi), set);
+}
+
+/* ---- all pairs ---- */
+
+/* A partner for wo: anywhere, where the sampler looks, near the mirror direction, or straight back. */
+static sr_vec3 partner(struct certifying *c, sr_vec3 wo)
+{
+    float kind = lab_u(&c->rng);
+    sr_vec3 wi = lab_anywhere(&c->rng);
+    struct sr_bsdf_sample sample;
+    if (kind < 0.4f) {
+        float u = lab_u(&c->rng);
+        if (sr_bsdf_sample(c->subject->b, wo, u, lab_square(&c->rng), SR_RADIANCE, &sample) && sr_is_finite(sample.wi) &&
+            sr_length2(sample.wi) > 0.5f && sr_length2(sample.wi) < 2)
+            return sample.wi;
+    } else if (kind < 0.6f)
+        wi = sr_normalize(sr_mad((sr_vec3){-wo.x, -wo.y, wo.z}, powf(10, -4 * lab_u(&c->rng)), lab_sphere(&c->rng)));
+    else if (kind < 0.65f)
+        wi = wo;
+    if (!c->subject->transmits && kind < 0.9f)
+        wi.z = copysignf(wi.z, wo.z);
+    return wi;
+}
+
+void lab_check_pairs(struct certifying *c)
+{
+    struct subject *s = c->subject;
+    const float tiny[] = {0, 1e-20f, 1e-8f, 1e-4f, 0.3f, 1};
+    sr_vec3 w[12];
+    for (int i = 0; i < 6; ++i) { // directions where formulas degenerate
+        float r = sqrtf(1 - tiny[i] * tiny[i]);
+        w[2 * i] = (sr_vec3){r, 0, tiny[i]};
+        w[2 * i + 1] = (sr_vec3){0.6f * r, -0.8f * r, -tiny[i]};
+    }
+    uint64_t looked = 0;
+    for (int i = 0; i < 12; ++i)
+        for (int j = 0; j < 24; ++j, ++looked) {
+            sr_vec3 wi = j < 12 ? w[j] : (sr_vec3){-w[j - 12].x, -w[j - 12].y, w[j - 12].z};
+            lab_check_values(c, CHECK_FINITE, CHECK_NON_NEGATIVE, w[i], wi);
+        }
+    uint32_t pairs = s->is_random ? 60 : 400;
+    for (uint32_t i = 0; i < pairs; ++i, ++looked) {
+        sr_vec3 wo = lab_anywhere(&c->rng), wi = partner(c, wo);
+        if (s->is_random)
+            lab_reseed(s, i);
+        if (!lab_check_values(c, CHECK_FINITE, CHECK_NON_NEGATIVE, wo, wi))
+            continue; // the other laws are about numbers
+        check_agreement(c, wo, wi, i & 1 ? SR_RADIANCE : SR_IMPORTANCE);
+        if (!s->is_random)
+            check_reciprocity(c, wo, wi);
+        for (int k = 0; k < 4; ++k)
+            check_sample(c, wo, CHECK_SAMPLE);
+    }
+    for (int i = 0; s->is_random && i < 2; ++i) {
+        sr_vec3 wo = lab_sphere(&c->rng), wi = lab_sphere(&c->rng);
+        if (!s->transmits || i == 0)
+            wi.z = copysignf(wi.z, wo.z);
+        check_mean_reciprocity(c, wo, wi);
+    }
+    lab_find(c, CHECK_FINITE, 0, false, "no NaN, no infinity");
+    lab_find(c, CHECK_NON_NEGATIVE, 0, false, "nothing below 0");
+    c->findings->of[CHECK_FINITE].count += looked - 1;
+    c->findings->of[CHECK_NON_NEGATIVE].count += looked - 1;
+    lab_skip(c, CHECK_RECIPROCITY, "it has delta lobes only");
+    lab_skip(c, CHECK_ADJOINT, "nothing is transmitted");
+    lab_skip(c, CHECK_SAMPLE, "samples know their density up to a factor only, or there are none");
+    lab_skip(c, CHECK_LOBES, "nothing is ever drawn");
+    lab_skip(c, CHECK_SUPPORT, "it has delta lobes only");
+}
+
+/* ---- extremes ---- */
+
+void lab_check_extremes(struct certifying *c)
+{
+    struct subject *s = c->subject;
+    char set[90];
+    lab_describe(s, 0, set, sizeof set);
+    const double deg[] = {89, 89.9, 89.99, 89.9999};
+    for (int i = 0; i < 4; ++i)
+        for (int side = 0; side < 2; ++side) {
+            double t = deg[i] * M_PI / 180, phi = 6.28 * (double)lab_u(&c->rng);
+            sr_vec3 wo = {(float)(sin(t) * cos(phi)), (float)(sin(t) * sin(phi)), (float)(side ? -cos(t) : cos(t))};
+            bool ok = true;
+            for (int k = 0; k < 24; ++k)
+                ok &= lab_check_values(c, CHECK_GRAZING, CHECK_GRAZING, wo, partner(c, wo));
+            int at;
+            double E = ok ? lab_albedo(s, wo, 256, &at) : 0;
+            // its even samples are no random ones: a bound that only real gains cross; "energy" has the strict one
+            lab_find(c, CHECK_GRAZING, E, E > 1.02 * s->largest_albedo + 1e-3, "albedo %.6g at theta_o %.6g deg; %s", E,
+                     deg[i], set);
+        }
+    for (int side = 0; side < 2; ++side) {
+        sr_vec3 n = {0, 0, side ? -1.0f : 1.0f};
+        bool ok = true;
+        for (int k = 0; k < 64; ++k) {
+            ok &= lab_check_values(c, CHECK_NORMAL, CHECK_NORMAL, n, partner(c, n));
+            if (ok)
+                check_sample(c, n, CHECK_NORMAL);
+        }
+        for (int k = 0; k < 32 && ok && !s->is_random; ++k) { // nothing may jump there
+            sr_vec3 wi = partner(c, n);
+            sr_vec3 near = sr_normalize((sr_vec3){3e-4f, 0, n.z}), far = sr_normalize((sr_vec3){6e-4f, 0, n.z});
+            sr_spectrum f0 = sr_bsdf_f(s->b, n, wi, SR_RADIANCE), f1 = sr_bsdf_f(s->b, near, wi, SR_RADIANCE),
+                        f2 = sr_bsdf_f(s->b, far, wi, SR_RADIANCE);
+            // narrow lobes change quickly, but evenly: a jump is what the next step does not do
+            double jump = fabs((double)(f1[0] - f0[0])), step = fabs((double)(f2[0] - f1[0]));
+            double excess = (jump - 8 * step - 0.01 * (double)f0[0]) / fmax((double)sr_max(f0[0], f1[0]), 1e-6);
+            double share = excess > 0 && wi.z != 0 && fabsf(wi.z) > 0.02f && fabsf(wi.z) < 0.999f ? excess : 0;
+            lab_find(c, CHECK_NORMAL, share, share > 0.05,
+                     "f jumps from %.5g to %.5g when wo leaves the normal by 0.017 deg, theta_i %.4g deg; %s",
+                     (double)f0[0], (double)f1[0], lab_theta_deg(wi), set);
+        }
+    }
+    lab_find(c, CHECK_NORMAL, 0, false, "finite, agreeing with its samples, without a jump");
+}
+
+void lab_check_end(struct certifying *c, const char *name, bool at_max)
+{
+    struct subject *s = c->subject;
+    char set[90];
+    lab_describe(s, 0, set, sizeof set);
+    bool ok = true;
+    for (int i = 0; i < 200; ++i) {
+        sr_vec3 wo = lab_anywhere(&c->rng);
+        ok &= lab_check_values(c, CHECK_ENDS, CHECK_ENDS, wo, partner(c, wo));
+        if (ok)
+            check_sample(c, wo, CHECK_SAMPLE);
+    }
+    for (int i = 0; i < 6 && ok; ++i) {
+        sr_vec3 wo = lab_anywhere(&c->rng);
+        int k;
+        double E = lab_albedo(s, wo, 256, &k);
+        lab_find(c, CHECK_ENDS, E, E > 1.02 * s->largest_albedo + 1e-3, "%s at its %s: albedo %.6g at theta_o %.4g deg; %s",
+                 name, at_max ? "greatest" : "least", E, lab_theta_deg(wo), set);
+    }
+}
