@@ -12,23 +12,24 @@
 /* What the checks are called, what they measure, and what is allowed. */
 static const struct {
     const char *name, *unit;
-    double limit; // NaN: depends
+    double limit;       // NaN: depends
+    bool is_comparison; // 0: equal
 } kinds[CHECKS] = {
     [CHECK_FINITE] = {"finite", "1", 0},
     [CHECK_NON_NEGATIVE] = {"non-negative", "1/sr", 0},
-    [CHECK_RECIPROCITY] = {"reciprocity", "1", 2e-3},
-    [CHECK_ADJOINT] = {"adjoint", "1", 2e-3},
+    [CHECK_RECIPROCITY] = {"reciprocity", "1", 2e-3, true},
+    [CHECK_ADJOINT] = {"adjoint", "1", 2e-3, true},
     [CHECK_ENERGY] = {"energy", "1", 1},
-    [CHECK_ALBEDO] = {"albedo", "1", (double)NAN},
+    [CHECK_ALBEDO] = {"albedo", "1", (double)NAN, true},
     [CHECK_NORMALISATION] = {"normalisation", "1", 1.0005},
     [CHECK_LOST] = {"lost samples", "1", (double)NAN},
     [CHECK_SAMPLING] = {"sampling", "1", (double)NAN},
     [CHECK_LIGHT] = {"light", "1", (double)NAN},
-    [CHECK_F_PDF] = {"f_pdf", "1", 0},
-    [CHECK_SAMPLE] = {"sample", "1", 2e-3},
+    [CHECK_F_PDF] = {"f_pdf", "1", 0, true},
+    [CHECK_SAMPLE] = {"sample", "1", 2e-3, true},
     [CHECK_SUPPORT] = {"support", "1/sr", 0},
     [CHECK_LOBES] = {"lobes", "1", 0},
-    [CHECK_DOUBLE] = {"double", "1", 2e-3},
+    [CHECK_DOUBLE] = {"double", "1", 2e-3, true},
     [CHECK_GRAZING] = {"grazing", "1", 1.02},
     [CHECK_NORMAL] = {"normal incidence", "1", 0.05},
     [CHECK_ENDS] = {"range ends", "1", 1},
@@ -82,8 +83,8 @@ static void merge(struct findings *all, const struct findings *more)
 /* ---- one set of parameters ---- */
 
 struct work {
-    const struct sr_bsdf_model *model;    // drawn from, or
-    const struct sr_specimen *specimen;   // as it is
+    const struct sr_bsdf_model *model;  // drawn from, or
+    const struct sr_specimen *specimen; // as it is
     const struct sr_certificate_options *options;
     uint32_t sets, ends, samples, directions;
     double p, z;
@@ -125,8 +126,12 @@ static void certify_set(void *context, uint64_t i)
             lab_check_pairs(&c);
             lab_check_extremes(&c);
             lab_check_double(&c);
-            lab_check_sampling(&c);
             lab_check_energy(&c);
+            how.broad = true;
+            if (!w->specimen)
+                status = lab_draw(w->model, &c.rng, how, &w->arenas[i], s, &w->errors[i]);
+            if (status == SR_OK)
+                lab_check_sampling(&c);
         }
     }
     sr_free(s);
@@ -141,9 +146,10 @@ static void judge_sums(struct findings *all, const struct work *w)
     double excess = fabs(all->lost) - all->lost_slack, z = excess / sqrt(all->lost_variance + 1);
     double n = (double)all->of[CHECK_LOST].count * w->samples;
     if (all->of[CHECK_LOST].count > 1 && excess > 0 && sr_normal_p_two_sided(z) < w->p)
-        lab_find(&c, CHECK_LOST, fabs(all->lost) / n, true,
-                 "of %.0f samples in all sets %.0f %s are lost than the density leaves over: a share of %.2g (z = %.1f)", n,
-                 fabs(all->lost), all->lost > 0 ? "more" : "fewer", fabs(all->lost) / n, z);
+        lab_find(
+            &c, CHECK_LOST, fabs(all->lost) / n, true,
+            "of %.0f samples in all sets %.0f %s are lost than the density leaves over: a share of %.2g (z = %.1f)", n,
+            fabs(all->lost), all->lost > 0 ? "more" : "fewer", fabs(all->lost) / n, z);
     z = all->light_z / sqrt(fmax(all->light_count, 1));
     if (all->light_count > 1 && fabs(z) > w->z)
         lab_find(&c, CHECK_LIGHT, fabs(z), true, "all sets together: drawn light is %s than described, z = %.1f",
@@ -161,14 +167,20 @@ static void judge(const struct findings *all, const struct work *w, double asymm
                                    .measured = f->count ? f->measured : (double)NAN,
                                    .limit = kinds[i].limit,
                                    .unit = kinds[i].unit,
-                                   .verdict = f->count == 0 ? SR_SKIPPED : f->failed ? SR_FAILED : SR_PASSED};
-        snprintf(check->text, sizeof check->text, "%s", f->text);
+                                   .verdict = f->count == 0 ? SR_SKIPPED
+                                              : f->failed   ? SR_FAILED
+                                                            : SR_PASSED};
+        check->count = f->count;
+        bool equals = check->verdict == SR_PASSED && f->measured == 0 && kinds[i].is_comparison;
+        snprintf(check->text, sizeof check->text, "%s", equals ? "equal everywhere" : f->text);
         if (i == CHECK_LIGHT)
             check->limit = w->z;
         if ((i == CHECK_RECIPROCITY || i == CHECK_ADJOINT) && f->count && asymmetry > 0) {
             // a law that the model breaks by its nature: what is allowed is what its table tells
             check->limit = asymmetry;
-            check->verdict = f->measured <= kinds[i].limit ? SR_PASSED : f->measured <= asymmetry ? SR_DOCUMENTED : SR_FAILED;
+            check->verdict = f->measured <= kinds[i].limit ? SR_PASSED
+                             : f->measured <= asymmetry    ? SR_DOCUMENTED
+                                                           : SR_FAILED;
         }
         if ((i == CHECK_ENERGY || i == CHECK_ENDS || i == CHECK_GRAZING) && f->count && largest_albedo > 1) {
             check->limit = largest_albedo * (i == CHECK_GRAZING ? 1.02 : 1);
@@ -250,4 +262,80 @@ sr_status sr_certify(const struct sr_specimen *specimen, const struct sr_certifi
         return sr_certify_model(model, options, out, error);
     struct work w = {.specimen = specimen, .options = options};
     return certify(&w, out, error);
+}
+
+/* ---- the soak ---- */
+
+struct soak {
+    const struct sr_bsdf_model *model;
+    const struct sr_specimen *specimen;
+    const struct sr_certificate_options *options;
+    uint64_t rounds;
+    struct findings *findings; // one a batch
+    struct sr_error *errors;
+};
+
+enum { SOAK_BATCHES = 64, SOAK_PAIRS = 1000, SOAK_CALLS = 3 }; // a pair: f and pdf together, and a sample
+
+static void soak_batch(void *context, uint64_t batch)
+{
+    struct soak *w = context;
+    struct subject *s = sr_alloc(sizeof *s);
+    if (!s) {
+        sr_fail(&w->errors[batch], SR_ERROR_RESOURCE, "not enough memory for a certificate");
+        return;
+    }
+    struct certifying c = {.options = w->options,
+                           .findings = &w->findings[batch],
+                           .subject = s,
+                           .rng = sr_rng_seed(w->options->seed + 1000003ull, batch + 1)};
+    struct sr_arena arena = {0};
+    sr_status status = SR_OK;
+    if (w->specimen)
+        lab_subject_of_specimen(w->specimen, s);
+    for (uint64_t i = batch; i < w->rounds && status == SR_OK; i += SOAK_BATCHES) {
+        if (!w->specimen)
+            status = lab_draw(w->model, &c.rng, (struct draw){.row = -1}, &arena, s, &w->errors[batch]);
+        for (int k = 0; k < SOAK_PAIRS && status == SR_OK; ++k) {
+            sr_vec3 wo = lab_anywhere(&c.rng);
+            lab_check_values(&c, CHECK_FINITE, CHECK_FINITE, wo, lab_partner(&c, wo));
+        }
+        sr_arena_free(&arena);
+    }
+    sr_free(s);
+}
+
+sr_status sr_soak(const struct sr_specimen *specimen, uint64_t calls, const struct sr_certificate_options *options,
+                  struct sr_certificate *certificate, struct sr_error *error)
+{
+    const struct sr_bsdf_model *model = specimen->part_count == 1 ? specimen->parts[0].model : NULL;
+    bool draws = options->sets > 0 && model && lab_can_draw(model);
+    struct soak w = {.model = draws ? model : NULL,
+                     .specimen = draws ? NULL : specimen,
+                     .options = options,
+                     .rounds = (calls + SOAK_PAIRS * SOAK_CALLS - 1) / (SOAK_PAIRS * SOAK_CALLS),
+                     .findings = sr_alloc((SOAK_BATCHES + 1) * sizeof *w.findings),
+                     .errors = sr_alloc(SOAK_BATCHES * sizeof *w.errors)};
+    sr_status status =
+        w.findings && w.errors ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for a soak");
+    if (status == SR_OK) {
+        sr_parallel_for(sr_thread_count(), SOAK_BATCHES, soak_batch, &w);
+        struct findings *all = &w.findings[SOAK_BATCHES];
+        for (int i = 0; i < SOAK_BATCHES; ++i) {
+            merge(all, &w.findings[i]);
+            if (w.errors[i].status && status == SR_OK)
+                status = sr_fail(error, w.errors[i].status, "%s", w.errors[i].text);
+        }
+        const struct finding *f = &all->of[CHECK_FINITE];
+        struct sr_check *check = &certificate->checks[certificate->count++];
+        *check = (struct sr_check){
+            .name = "soak", .unit = "1", .measured = (double)f->count, .verdict = f->count ? SR_FAILED : SR_PASSED};
+        snprintf(check->text, sizeof check->text, "%s",
+                 f->count ? f->text : "no NaN, no infinity, nothing below 0 in so many calls");
+        certificate->passed &= f->count == 0;
+        certificate->evaluations += w.rounds * SOAK_PAIRS * SOAK_CALLS;
+    }
+    sr_free(w.findings);
+    sr_free(w.errors);
+    return status;
 }

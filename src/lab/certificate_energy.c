@@ -82,8 +82,9 @@ static void check_closed_form(struct certifying *c, uint32_t n)
         double error = sr_tally_standard_error(&E[k]), d = fabs(E[k].mean - (double)known[k]);
         char set[90];
         lab_describe(s, k, set, sizeof set);
-        lab_find(c, CHECK_ALBEDO, d, d > c->z * error + 2e-5, "drawn %.6g +- %.2g, closed form %.6g at theta_o %.4g deg; %s",
-                 E[k].mean, error, (double)known[k], lab_theta_deg(wo), set);
+        lab_find(c, CHECK_ALBEDO, d, d > c->z * error + 2e-5,
+                 "drawn %.6g +- %.2g, closed form %.6g at theta_o %.4g deg; %s", E[k].mean, error, (double)known[k],
+                 lab_theta_deg(wo), set);
     }
     lab_skip(c, CHECK_ALBEDO, "the model tells no closed form for these parameters");
 }
@@ -114,7 +115,8 @@ void lab_check_energy(struct certifying *c)
             }
         }
     double lo = grid_deg[best_i ? best_i - 1 : 0], hi = best_i + 1 < GRID ? grid_deg[best_i + 1] : 89.95;
-    double shrink = (sqrt(5) - 1) / 2, x = hi - shrink * (hi - lo), y = lo + shrink * (hi - lo), theta = grid_deg[best_i];
+    double shrink = (sqrt(5) - 1) / 2, x = hi - shrink * (hi - lo), y = lo + shrink * (hi - lo),
+           theta = grid_deg[best_i];
     int k;
     double fx = lab_albedo(s, viewer(x, best_phi, best_below), fine, &k),
            fy = lab_albedo(s, viewer(y, best_phi, best_below), fine, &k);
@@ -136,7 +138,7 @@ void lab_check_energy(struct certifying *c)
     char set[100];
     lab_describe(s, wavelength, set, sizeof set);
     double limit = s->largest_albedo * (1 + 1e-5) + 2e-5;
-    lab_find(c, CHECK_ENERGY, mean, mean - c->z * error > limit, "E = %.6g +- %.2g at theta_o %.4g%s, phi %.4g deg; %s", mean,
-             error, theta, best_below ? " from below" : "", best_phi * 180 / M_PI, set);
+    lab_find(c, CHECK_ENERGY, mean, mean - c->z * error > limit, "E = %.6g +- %.2g at theta_o %.4g%s, phi %.4g deg; %s",
+             mean, error, theta, best_below ? " from below" : "", best_phi * 180 / M_PI, set);
     check_closed_form(c, fresh);
 }

@@ -109,6 +109,7 @@ struct sr_check {
     enum sr_verdict verdict;
     double measured, limit; // [unit]
     const char *unit;
+    uint64_t count; // of pairs, samples, or statistical tests
     char text[200]; // where and how: "largest at theta_o = 71 deg, alpha = 0.02"
 };
 struct sr_certificate {
@@ -129,6 +130,11 @@ sr_status sr_certify(const struct sr_specimen *specimen, const struct sr_certifi
 /* The same for a model that no list knows; how the tests see that broken models are caught. */
 sr_status sr_certify_model(const struct sr_bsdf_model *model, const struct sr_certificate_options *options,
                            struct sr_certificate *out, struct sr_error *error);
+/* Calls f, pdf and sample, `calls` times in all, over parameter sets and directions of all kinds, and looks for NaN,
+ * infinite and negative values only: adds a check "soak" to the certificate. Of the specimen as it is where options->sets
+ * is 0 or its parameters cannot be drawn. */
+sr_status sr_soak(const struct sr_specimen *specimen, uint64_t calls, const struct sr_certificate_options *options,
+                  struct sr_certificate *certificate, struct sr_error *error);
 
 /* ---- fitting ---- */
 

@@ -24,7 +24,7 @@ struct subject {
     bool is_random;                     // f of these parameters depends on the seed
     bool is_proportional;               // some sample knows its density up to a factor only
     bool transmits;
-    double asymmetry, largest_albedo; // [1] documented; the albedo is 1 where nothing is
+    double asymmetry, largest_albedo;             // [1] documented; the albedo is 1 where nothing is
     _Alignas(64) unsigned char raw[SR_BSDF_SIZE]; // parameters as drawn, before the model got ready
     struct sr_specimen_at at;
 };
@@ -34,6 +34,7 @@ struct draw {
     int row;     // -1: all rows at random; else this row of the table is at its end
     bool at_max; // which end
     bool plain;  // the other rows have their defaults
+    bool broad;  // no slopes below 0.01 [1], for quadratures: a ridge of 1e-4 by 1 would ask for 1e8 points
 };
 /* Draws within the table's ranges. What models load goes to the arena. */
 sr_status lab_draw(const struct sr_bsdf_model *model, struct sr_rng *rng, struct draw how, struct sr_arena *arena,
@@ -123,7 +124,8 @@ void lab_find(struct certifying *c, enum check check, double measured, bool fail
 /* Only where nothing was looked at in any set. */
 void lab_skip(struct certifying *c, enum check check, const char *why);
 
-void lab_check_pairs(struct certifying *c);    // finite, not negative, reciprocal, adjoint, agreeing, of the lobes it tells
+void lab_check_pairs(
+    struct certifying *c); // finite, not negative, reciprocal, adjoint, agreeing, of the lobes it tells
 void lab_check_extremes(struct certifying *c); // grazing and vertical
 void lab_check_double(struct certifying *c);
 void lab_check_sampling(struct certifying *c); // normalisation, chi-square, moments of light
@@ -132,7 +134,15 @@ void lab_check_energy(struct certifying *c);   // largest albedo, closed form
 void lab_check_end(struct certifying *c, const char *name, bool at_max);
 /* Largest E(wo) [1] over wavelengths by n samples that fill the square evenly; *k: of which wavelength. */
 double lab_albedo(struct subject *s, sr_vec3 wo, uint32_t n, int *k);
-/* f, pdf and a few samples at a pair of directions: NaN, infinite or negative values are found. The soak calls it. */
+/* What f and pdf change under directions that are a few roundings apart: the largest of eight movements, fourfold. */
+void lab_sensitivity(const struct subject *s, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, sr_spectrum *df,
+                     float *dpdf);
+/* The difference of two values beyond the slack, relative to the larger; NaN counts as 1. */
+double lab_apart(double a, double b, double slack);
+#define LAB_EQUAL 2e-3 // [1] relative deviation between values that ought to be equal
+/* A partner for wo: anywhere, where the sampler looks, near the mirror direction, or straight back. */
+sr_vec3 lab_partner(struct certifying *c, sr_vec3 wo);
+/* f, pdf and a sample at a pair of directions: NaN, infinite or negative values are found. The soak calls it. */
 bool lab_check_values(struct certifying *c, enum check finite, enum check negative, sr_vec3 wo, sr_vec3 wi);
 
 #endif

@@ -55,8 +55,8 @@ static float draw_number(const struct sr_param *p, struct sr_rng *rng)
         return (float)hi;
     if (lo > 0 && hi / lo > 50)
         return (float)(lo * pow(hi / lo, u));
-    if (lo == 0 && (has(p->name, "alpha") || has(p->name, "roughness") || has(p->name, "thickness") ||
-                    has(p->name, "exponent")))
+    if (lo == 0 &&
+        (has(p->name, "alpha") || has(p->name, "roughness") || has(p->name, "thickness") || has(p->name, "exponent")))
         return (float)(hi * pow(10, -3 * u));
     return (float)(lo + (hi - lo) * u);
 }
@@ -96,6 +96,8 @@ static void fill(const struct sr_param *p, struct sr_rng *rng, struct draw how, 
     bool is_initial = how.row >= 0 && how.plain && !is_chosen;
     if (p->kind == SR_PARAM_FLOAT) {
         float v = draw_number(p, rng);
+        if (how.broad && (has(p->name, "alpha") || has(p->name, "roughness")) && v < 0.01f && p->max > 0.01)
+            v = 0.01f;
         memcpy(at, &(float){is_chosen ? (float)end : is_initial ? (float)p->initial : v}, sizeof(float));
     } else if (p->kind == SR_PARAM_INT) {
         double hi = p->max < p->min + 63 ? p->max : p->min + 63;

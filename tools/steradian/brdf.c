@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct command *const parts[] = {&brdf_list, &brdf_show, &brdf_eval, &brdf_fit, &brdf_convert};
+static const struct command *const parts[] = {&brdf_list,  &brdf_show, &brdf_eval,
+                                              &brdf_check, &brdf_fit,  &brdf_convert};
 enum { PARTS = sizeof parts / sizeof parts[0] };
 
 static void print_help(FILE *out)
