@@ -4,7 +4,7 @@
  * Statistical tests share one significance: with T tests in all, each may fail with the probability significance / T
  * (Bonferroni), so that a sound model fails its certificate with less than the significance asked for. What every set shows
  * a little of, none alone would prove: lost samples and the bias of the light are also summed over all sets. */
-#include "lab/private.h"
+#include "lab/certificate.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -112,7 +112,7 @@ static void certify_set(void *context, uint64_t i)
     sr_status status = SR_OK;
     bool is_end = i >= w->sets;
     int row = (int)(i - w->sets) / 4, which = (int)(i - w->sets) % 4;
-    struct draw how = {.row = is_end ? row : -1, .at_max = which & 1, .plain = which < 2};
+    struct lab_drawing how = {.row = is_end ? row : -1, .at_max = which & 1, .plain = which < 2};
     if (w->specimen)
         lab_subject_of_specimen(w->specimen, s);
     else
@@ -295,7 +295,7 @@ static void soak_batch(void *context, uint64_t batch)
         lab_subject_of_specimen(w->specimen, s);
     for (uint64_t i = batch; i < w->rounds && status == SR_OK; i += SOAK_BATCHES) {
         if (!w->specimen)
-            status = lab_draw(w->model, &c.rng, (struct draw){.row = -1}, &arena, s, &w->errors[batch]);
+            status = lab_draw(w->model, &c.rng, (struct lab_drawing){.row = -1}, &arena, s, &w->errors[batch]);
         for (int k = 0; k < SOAK_PAIRS && status == SR_OK; ++k) {
             sr_vec3 wo = lab_anywhere(&c.rng);
             lab_check_values(&c, CHECK_FINITE, CHECK_FINITE, wo, lab_partner(&c, wo));

@@ -4,7 +4,7 @@
  *
  * What counts is what the model loses by its own arithmetic: the part of the deviation that a change of the directions by
  * a few roundings does not explain. Where f is below a millionth of a Lambertian's, its digits do not matter. */
-#include "lab/private.h"
+#include "lab/certificate.h"
 
 #define NOTHING 3e-7 // [1/sr]
 

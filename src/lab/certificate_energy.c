@@ -7,7 +7,7 @@
  * fill the square evenly (Hammersley 1960), so that E is smooth in wo; the verdict falls on fresh random ones, by
  * their standard error, because a maximum of noisy values is too large. Where the sampler never looks, energy would be
  * overlooked here: that is what the support and the light are checked for. */
-#include "lab/private.h"
+#include "lab/certificate.h"
 
 static double radical_inverse(uint32_t i, uint32_t base)
 {

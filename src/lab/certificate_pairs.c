@@ -8,7 +8,7 @@
  * Floats of narrow lobes have few digits: two values that ought to be equal may differ by 0.2 %, or by what f changes when
  * the coordinates of a direction change by 2e-7 (two or three roundings). What is reported is the excess over that change, as a
  * share of the larger value. */
-#include "lab/private.h"
+#include "lab/certificate.h"
 
 #include <string.h>
 

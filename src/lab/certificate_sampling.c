@@ -16,7 +16,7 @@
  * Limits: a lobe narrower than 1e-4 rad off these directions that the sampler never draws is not found. Where the samples
  * of many cells crowd on a ridge that is much narrower than the cell, no quadrature of this size resolves the density: such
  * viewing directions are left out (bsdf of slopes 1e-4 by 1; the law that a sample's pdf is pdf() is still checked). */
-#include "lab/private.h"
+#include "lab/certificate.h"
 
 #include <string.h>
 

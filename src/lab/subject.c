@@ -4,7 +4,7 @@
  * Numbers are uniform over their range; over its logarithm where the range spans decades (widths, exponents, thicknesses);
  * one in eight is at either end, because laws break there first. Reflectances that share one incident light (reflectance,
  * transmittance, specular, diffuse) are drawn so that they do not sum above 1. */
-#include "lab/private.h"
+#include "lab/certificate.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -89,7 +89,8 @@ static sr_spectrum draw_spectrum(const struct sr_param *p, struct sr_rng *rng)
     return v;
 }
 
-static void fill(const struct sr_param *p, struct sr_rng *rng, struct draw how, bool is_chosen, unsigned char *data)
+static void fill(const struct sr_param *p, struct sr_rng *rng, struct lab_drawing how, bool is_chosen,
+                 unsigned char *data)
 {
     void *at = data + p->offset;
     double end = how.at_max ? upper(p) : p->min;
@@ -124,7 +125,8 @@ static void fill(const struct sr_param *p, struct sr_rng *rng, struct draw how, 
 }
 
 /* Takes from each what others have taken before, beginning at a random one (or at the one whose end is wanted). */
-static void share_light(const struct sr_bsdf_model *model, struct sr_rng *rng, struct draw how, unsigned char *data)
+static void share_light(const struct sr_bsdf_model *model, struct sr_rng *rng, struct lab_drawing how,
+                        unsigned char *data)
 {
     int rows = 0;
     while (model->params[rows].name)
@@ -186,8 +188,8 @@ static void look(struct subject *s)
     }
 }
 
-sr_status lab_draw(const struct sr_bsdf_model *model, struct sr_rng *rng, struct draw how, struct sr_arena *arena,
-                   struct subject *s, struct sr_error *error)
+sr_status lab_draw(const struct sr_bsdf_model *model, struct sr_rng *rng, struct lab_drawing how,
+                   struct sr_arena *arena, struct subject *s, struct sr_error *error)
 {
     s->specimen = NULL;
     s->model = model;
