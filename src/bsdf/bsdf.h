@@ -88,6 +88,7 @@ struct sr_bsdf_model {
     X(lunar)                                                                                                           \
     X(dust)                                                                                                            \
     X(hapke)                                                                                                           \
+    X(spectralon)                                                                                                      \
     X(conductor)                                                                                                       \
     X(dielectric)                                                                                                      \
     X(microfacet)                                                                                                      \
