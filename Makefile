@@ -4,8 +4,9 @@ BUILD ?= build
 PREFIX ?= /usr/local
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 OUT ?= out
+SECONDS ?= 60
 
-.PHONY: all render test test-asan test-tsan bench check format install clean packages
+.PHONY: all render test test-asan test-tsan fuzz bench check format install clean packages
 
 all: packages
 	@cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release >$(BUILD).log 2>&1 || { cat $(BUILD).log; exit 1; }
@@ -34,6 +35,13 @@ test-tsan: packages
 	cmake --build build-tsan --parallel $(JOBS)
 	ctest --test-dir build-tsan --output-on-failure -L tsan
 
+# each reader of foreign files, SECONDS long, with sanitizers; by libFuzzer where clang is there
+fuzz: packages
+	cmake -S . -B build-fuzz -DSTERADIAN_FUZZ=ON -DBUILD_TESTING=OFF -DCMAKE_BUILD_TYPE=Debug \
+	  $$(command -v clang >/dev/null && echo -DCMAKE_C_COMPILER=clang) >/dev/null
+	@cmake --build build-fuzz --parallel $(JOBS) --target fuzz_programs >build-fuzz.log 2>&1 || { cat build-fuzz.log; exit 1; }
+	scripts/fuzz build-fuzz/fuzz $(SECONDS)
+
 bench: all
 	$(BUILD)/sr_bench
 
@@ -48,4 +56,4 @@ install: all
 	cmake --install $(BUILD) --prefix $(PREFIX)
 
 clean:
-	rm -rf $(BUILD) build-asan build-tsan build-debug $(OUT) *.log
+	rm -rf $(BUILD) build-asan build-tsan build-debug build-fuzz $(OUT) *.log

@@ -91,8 +91,8 @@ static sr_status recognise(const struct source *s, enum sr_measured_format *form
     return SR_OK;
 }
 
-sr_status sr_measured_parse(const char *name, const void *data, size_t size, const struct sr_measured_options *options,
-                            struct sr_arena *arena, const struct sr_measured **out, struct sr_error *error)
+sr_status measured_load(const char *name, const void *data, size_t size, const struct sr_measured_options *options,
+                        struct sr_arena *arena, struct sr_measured **out, struct sr_error *error)
 {
     static sr_status (*const readers[])(const struct source *,
                                         struct sr_measured *) = {[SR_MEASURED_MERL] = read_merl,
@@ -123,10 +123,21 @@ sr_status sr_measured_parse(const char *name, const void *data, size_t size, con
                        sr_measured_format_name(m->format));
     if (m->quantity == SR_MEASURED_AUTO)
         m->quantity = s.options.quantity ? s.options.quantity : SR_MEASURED_BSDF;
-    if (guide_build(m, arena) != SR_OK)
-        return sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", name);
     *out = m;
     return SR_OK;
+}
+
+sr_status sr_measured_parse(const char *name, const void *data, size_t size, const struct sr_measured_options *options,
+                            struct sr_arena *arena, const struct sr_measured **out, struct sr_error *error)
+{
+    struct sr_measured *m;
+    *out = NULL;
+    sr_status status = measured_load(name, data, size, options, arena, &m, error);
+    if (status == SR_OK && guide_build(m, arena) != SR_OK)
+        status = sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", name);
+    if (status == SR_OK)
+        *out = m;
+    return status;
 }
 
 sr_status sr_measured_read(const char *path, const struct sr_measured_options *options, struct sr_arena *arena,

@@ -98,6 +98,9 @@ struct sr_measured {
     struct guide guide;
 };
 sr_status guide_build(struct sr_measured *m, struct sr_arena *arena);
+/* sr_measured_parse without the guide: what can go wrong with a file goes wrong here. */
+sr_status measured_load(const char *name, const void *data, size_t size, const struct sr_measured_options *options,
+                        struct sr_arena *arena, struct sr_measured **out, struct sr_error *error);
 
 /* One function a format: fills in all of *m but guide; the format has been recognised already. */
 sr_status read_merl(const struct source *s, struct sr_measured *m);

@@ -18,9 +18,10 @@ sr_spectrum sr_measured_albedo(const struct sr_measured *m, sr_vec3 wi, uint32_t
     if (wi.z == 0 || !(sr_measured_sides(m) & side))
         return sum;
     if (m->albedo) {
-        if (!m->has_back)
-            wi.z = fabsf(wi.z);
-        return m->albedo(m->data, wi, side, lambda);
+        wi.z = m->has_back ? wi.z : fabsf(wi.z);
+        return (wi.z < 0 ? m->back_sides : m->sides | (m->has_back ? 0 : m->back_sides)) & side
+                   ? m->albedo(m->data, wi, side, lambda)
+                   : sum;
     }
     sr_vec3 up = {wi.x, wi.y, fabsf(wi.z)};
     float phi_i = wi.x != 0 || wi.y != 0 ? atan2f(wi.y, wi.x) : 0;

@@ -163,6 +163,7 @@ static sr_spectrum f(const void *data, sr_vec3 wo, sr_vec3 wi, sr_spectrum lambd
         float sigma = map_at(&r->sigma, u_o.x, u_o.y);
         scale = sigma > 0 ? scale * map_at(&r->ndf, u_m.x, u_m.y) / (4 * sigma) : 0;
     }
+    scale = sr_min(scale, 1e12f); // of a sigma that makes no sense
     return scale > 0 ? channels_eval(&r->channels, r->spectra, &at, lambda) * scale : SR_BLACK;
 }
 

@@ -163,6 +163,7 @@ static void disk_to_square(float x, float y, float square[2])
         float phi = atan2f(y, x);
         phi = phi < -SR_PI / 4 ? phi + 2 * SR_PI : phi; // -pi/4 … 7 pi/4
         int quarter = (int)((phi + SR_PI / 4) / (SR_PI / 2));
+        quarter = quarter < 3 ? quarter : 3; // a whole turn by rounding
         float across = r * (phi - (float)quarter * (SR_PI / 2)) * (4 / SR_PI);
         a = quarter == 0 ? r : quarter == 1 ? -across : quarter == 2 ? -r : across;
         b = quarter == 0 ? across : quarter == 1 ? r : quarter == 2 ? -across : -r;

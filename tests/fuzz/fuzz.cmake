@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: MIT
+# Fuzz targets: cmake -DSTERADIAN_FUZZ=ON, target fuzz_programs. Readers are compiled anew, with sanitizers; with clang's
+# libFuzzer where the compiler has it, else with a driver of our own. `make fuzz SECONDS=60` does all of it.
+file(GLOB fuzzed_sources CONFIGURE_DEPENDS src/base/*.c src/math/*.c src/spectrum/*.c src/sample/*.c src/measured/*.c)
+set(fuzz_flags -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+set(CMAKE_REQUIRED_FLAGS -fsanitize=fuzzer-no-link)
+check_c_source_compiles("int main(void) { return 0; }" STERADIAN_HAS_LIBFUZZER)
+unset(CMAKE_REQUIRED_FLAGS)
+
+add_library(steradian_fuzzed STATIC EXCLUDE_FROM_ALL ${fuzzed_sources} ${RGB_TABLE_SOURCES})
+target_include_directories(steradian_fuzzed PUBLIC src include tests)
+target_compile_options(steradian_fuzzed PUBLIC ${fuzz_flags})
+target_link_options(steradian_fuzzed PUBLIC -fsanitize=address,undefined)
+target_link_libraries(steradian_fuzzed PUBLIC steradian_flags Threads::Threads ZLIB::ZLIB EXPAT::EXPAT m)
+target_compile_definitions(steradian_fuzzed PRIVATE SR_VERSION="${PROJECT_VERSION}")
+if(STERADIAN_HAS_LIBFUZZER)
+  target_compile_options(steradian_fuzzed PUBLIC -fsanitize=fuzzer-no-link)
+endif()
+
+add_custom_target(fuzz_programs)
+set(number 0)
+foreach(format merl rgl rgl_rgb polarised klems tree cornell astm abg table cloud) # in the order of seeds.h
+  add_executable(fuzz_${format} EXCLUDE_FROM_ALL tests/fuzz/fuzz_measured.c)
+  target_link_libraries(fuzz_${format} PRIVATE steradian_fuzzed)
+  target_compile_definitions(fuzz_${format} PRIVATE FUZZ_SEED=${number})
+  if(STERADIAN_HAS_LIBFUZZER)
+    target_compile_definitions(fuzz_${format} PRIVATE FUZZ_LIBFUZZER)
+    target_link_options(fuzz_${format} PRIVATE -fsanitize=fuzzer)
+  endif()
+  set_target_properties(fuzz_${format} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/fuzz)
+  add_dependencies(fuzz_programs fuzz_${format})
+  math(EXPR number "${number} + 1")
+endforeach()
