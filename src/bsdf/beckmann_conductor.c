@@ -45,7 +45,8 @@ static struct facets facets(const struct beckmann_conductor *m)
     return facets_of(SLOPES_BECKMANN, MASKING_SMITH, m->alpha_x, m->alpha_y);
 }
 
-static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *p)
+__attribute__((noinline)) static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode,
+                                                   float *p)
 {
     const struct beckmann_conductor *m = self;
     (void)mode;

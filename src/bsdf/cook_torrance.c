@@ -63,7 +63,8 @@ static float facet_share(const struct cook_torrance *m, sr_vec3 wo)
     return facets > 0 ? larger(facets / (facets + m->matte), 0.1f) : 0;
 }
 
-static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *p)
+__attribute__((noinline)) static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode,
+                                                   float *p)
 {
     const struct cook_torrance *m = self;
     (void)mode;

@@ -62,7 +62,8 @@ static sr_spectrum reflectance(const struct microfacet *m, float c)
     return m->specular + (1 - m->specular) * (d2 * d2 * d);
 }
 
-static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *p)
+__attribute__((noinline)) static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode,
+                                                   float *p)
 {
     const struct microfacet *m = self;
     (void)mode;

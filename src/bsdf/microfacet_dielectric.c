@@ -41,7 +41,8 @@ static uint32_t lobes(const void *self)
     return SR_LOBE_REFLECTION | SR_LOBE_TRANSMISSION | (boundary(self).is_smooth ? SR_LOBE_SPECULAR : SR_LOBE_GLOSSY);
 }
 
-static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *p)
+__attribute__((noinline)) static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode,
+                                                   float *p)
 {
     const struct microfacet_dielectric *m = self;
     struct rough_interface a = boundary(m);

@@ -71,7 +71,8 @@ static float facet_share(const struct torrance_sparrow *m, sr_vec3 wo)
 /* Tilts are drawn by the density 2 t exp(-(t / alpha)^2) / (alpha^2 cut), azimuths evenly, and of each pair of a groove's
  * facets the one that is seen: over the cosine |wo.m| the density is D' min(1 / |zo|, 2 m.z / |wo.m|) [1/sr], where D' is as
  * D but for a factor near 1. */
-static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *p)
+__attribute__((noinline)) static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode,
+                                                   float *p)
 {
     const struct torrance_sparrow *m = self;
     (void)mode;

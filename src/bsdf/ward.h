@@ -100,7 +100,8 @@ static inline bool ward_sample(const struct ward *m, sr_vec3 wo, float u_lobe, s
 
 /* f, pdf and sample of a model whose lobe is specular times factor(H, wo, wi) times e / (4 pi ax ay). */
 #define WARD_FUNCTIONS(model, factor)                                                                                  \
-    static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *p)               \
+    __attribute__((noinline)) static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi,                       \
+                                                       enum sr_transport mode, float *p)                               \
     {                                                                                                                  \
         const struct ward *m = self;                                                                                   \
         (void)mode;                                                                                                    \

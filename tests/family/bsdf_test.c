@@ -64,15 +64,17 @@ static bool needs_files(const struct sr_bsdf_model *m)
     return status != SR_OK;
 }
 
+static float narrowest = 0.2f; // [1] slope width that is drawn where not sharp
+
 /* Draws parameters. Slopes: sharp with that probability (a mirror or narrower than quadratures resolve), else from
- * 0.2 to 1, and indices not near 1, where refraction is as sharp as a mirror. Walks as long as the table allows, so that f and sample are truncated alike. */
+ * the narrowest to 1, and indices not near 1, where refraction is as sharp as a mirror. Walks as long as the table allows, so that f and sample are truncated alike. */
 static struct sr_bsdf draw(const struct sr_bsdf_model *model, struct sr_rng *rng, float sharp)
 {
     struct sr_bsdf b = {.model = model};
     sr_spectrum spent = SR_BLACK; // what other reflectances have taken
     float kind = uniform(rng), slope[2] = {0, 0};
     for (int i = 0; i < 2; ++i)
-        slope[i] = powf(10, -0.7f * uniform(rng));
+        slope[i] = powf(narrowest, uniform(rng));
     for (const struct sr_param *p = model->params; p->name; ++p) {
         void *at = b.data + p->offset;
         float lo = (float)p->min, hi = (float)p->max;
@@ -93,7 +95,8 @@ static struct sr_bsdf draw(const struct sr_bsdf_model *model, struct sr_rng *rng
             else if (strcmp(p->name, "thickness") == 0)
                 v = powf(10, -2.5f + 3 * uniform(rng));
             else if (strncmp(p->name, "exponent", 8) == 0)
-                v = powf(10, (kind < sharp ? 4 : 1.7f) * uniform(rng)); // else broad enough for quadratures
+                v = powf(10, (kind < sharp || narrowest < 0.1f ? 4 : 1.7f) *
+                                 uniform(rng)); // else broad enough for quadratures
             if (strcmp(p->name, "eta") == 0 && kind >= sharp && v > 0.67f && v < 1.5f)
                 v = v < 1 ? 0.67f : 1.5f;
             v = sr_clamp(v, lo, hi);
@@ -238,35 +241,86 @@ TEST(bsdf_does_not_make_light)
     }
 }
 
-#define CELLS_Z 20
-#define CELLS_PHI 24
-#define FINE 24 // points of a cell and axis: many, because total reflection begins with a kink
+/* Cells of the sphere that are the smaller the more samples fall there, so that a lobe is seen however narrow it is: a tree
+ * of rectangles of s = 1 - cos theta and phi, which are even in solid angle. */
+enum { CELLS = 40000, SEEDS = 20000, FULL = 50, LEAST_DEPTH = 3, MOST_DEPTH = 26 };
+struct cell {
+    double s, phi, ds, dphi; // begin and extent
+    int children, seeds;     // children: index of the first of four, 0: a leaf
+};
+static struct cell cells[CELLS];
+static int cell_count;
 
-/* the density [1/sr] in each cell of the sphere, even in cos theta and phi, by midpoints */
-static double cell_probabilities(const struct sr_bsdf *b, sr_vec3 wo, double *cells)
+static void split_cell(int i)
 {
-    double total = 0, area = 4 * PI / (CELLS_Z * CELLS_PHI);
-    for (int i = 0; i < CELLS_Z; ++i)
-        for (int j = 0; j < CELLS_PHI; ++j) {
-            double sum = 0;
-            for (int k = 0; k < FINE * FINE; ++k) {
-                double z = 2 * (i + (k / FINE + 0.5) / FINE) / CELLS_Z - 1,
-                       phi = 2 * PI * (j + (k % FINE + 0.5) / FINE) / CELLS_PHI;
-                sr_vec3 wi = {(float)(sqrt(1 - z * z) * cos(phi)), (float)(sqrt(1 - z * z) * sin(phi)), (float)z};
-                sum += (double)sr_bsdf_pdf(b, wo, wi, SR_RADIANCE);
-            }
-            total += cells[i * CELLS_PHI + j] = sum * area / (FINE * FINE);
-        }
-    return total;
+    cells[i].children = cell_count;
+    double ds = cells[i].ds / 2, dphi = cells[i].dphi / 2;
+    for (int k = 0; k < 4; ++k)
+        cells[cell_count++] = (struct cell){cells[i].s + (k & 1) * ds, cells[i].phi + (k >> 1) * dphi, ds, dphi, 0, 0};
 }
-static int cell_of(sr_vec3 w)
+static int cell_of(sr_vec3 w, int *depth)
 {
+    double r2 = (double)w.x * (double)w.x + (double)w.y * (double)w.y;
+    double s = w.z > 0 ? r2 / (1 + (double)w.z) : 2 - r2 / (1 - (double)w.z);
     double phi = atan2((double)w.y, (double)w.x);
-    int i = (int)((1 + (double)w.z) / 2 * CELLS_Z), j = (int)((phi < 0 ? phi + 2 * PI : phi) / (2 * PI) * CELLS_PHI);
-    return (i < CELLS_Z ? i : CELLS_Z - 1) * CELLS_PHI + (j < CELLS_PHI ? j : CELLS_PHI - 1);
+    phi += phi < 0 ? 2 * PI : 0;
+    int i = 0;
+    for (*depth = 0; cells[i].children; ++*depth)
+        i = cells[i].children + (s >= cells[i].s + cells[i].ds / 2) + 2 * (phi >= cells[i].phi + cells[i].dphi / 2);
+    return i;
+}
+static void make_cells(const struct sr_bsdf *b, sr_vec3 wo, struct sr_rng *rng)
+{
+    cell_count = 1;
+    cells[0] = (struct cell){0, 0, 2, 2 * PI, 0, 0};
+    for (int i = 0, depth = 0; depth < LEAST_DEPTH; ++depth)
+        for (int end = cell_count; i < end; ++i)
+            split_cell(i);
+    for (int n = 0; n < SEEDS; ++n) {
+        struct sr_bsdf_sample s;
+        int depth;
+        float u = uniform(rng);
+        if (!sr_bsdf_sample(b, wo, u, square(rng), SR_RADIANCE, &s) || (s.lobe & SR_LOBE_SPECULAR))
+            continue;
+        int i = cell_of(s.wi, &depth);
+        if (++cells[i].seeds > FULL && depth < MOST_DEPTH && cell_count + 4 <= CELLS)
+            split_cell(i);
+    }
 }
 
-/* Samples fall as the density says (Pearson's chi-square); the rest are mirrored or absorbed. */
+/* INTEGRAL pdf over a rectangle: Gauss's 4 by 4 points, and where four quarters say something else, these. */
+static double gauss_of(const struct sr_bsdf *b, sr_vec3 wo, double s0, double phi0, double ds, double dphi)
+{
+    static const double x[4] = {0.0694318442029737, 0.3300094782075719, 0.6699905217924281, 0.9305681557970263},
+                        w[4] = {0.1739274225687269, 0.3260725774312731, 0.3260725774312731, 0.1739274225687269};
+    double sum = 0;
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j) {
+            double s = s0 + x[i] * ds, r = sqrt(s * (2 - s)), phi = phi0 + x[j] * dphi;
+            sr_vec3 wi = {(float)(r * cos(phi)), (float)(r * sin(phi)), (float)(1 - s)};
+            sum += w[i] * w[j] * (double)sr_bsdf_pdf(b, wo, wi, SR_RADIANCE);
+        }
+    return sum * ds * dphi;
+}
+static double probability_of(const struct sr_bsdf *b, sr_vec3 wo, double s, double phi, double ds, double dphi,
+                             double whole, int depth, int least_depth)
+{
+    double quarter[4], sum = 0;
+    ds /= 2;
+    dphi /= 2;
+    for (int k = 0; k < 4; ++k)
+        sum += quarter[k] = gauss_of(b, wo, s + (k & 1) * ds, phi + (k >> 1) * dphi, ds, dphi);
+    if (depth == 7 || (depth >= least_depth && fabs(sum - whole) < 1e-6 + 2e-3 * sum))
+        return sum;
+    sum = 0;
+    for (int k = 0; k < 4; ++k)
+        sum += probability_of(b, wo, s + (k & 1) * ds, phi + (k >> 1) * dphi, ds, dphi, quarter[k], depth + 1,
+                              least_depth);
+    return sum;
+}
+
+/* Samples fall as the density says (Pearson's chi-square); the rest are mirrored or absorbed. Half of the lobes are as narrow
+ * as alpha = 0.01. */
 TEST(bsdf_sampler_follows_its_pdf)
 {
     FOR_EACH_MODEL(m)
@@ -274,36 +328,50 @@ TEST(bsdf_sampler_follows_its_pdf)
         struct sr_rng rng = sr_rng_seed(13, 1);
         int tested = 0;
         for (int set = 0; set < 32 && tested < 16; ++set) {
+            narrowest = set & 1 ? 0.01f : 0.2f;
             struct sr_bsdf b = draw(m, &rng, 0);
+            narrowest = 0.2f;
             sr_vec3 wo = viewer(&rng);
             const int n = 100000;
-            static double expected[CELLS_Z * CELLS_PHI + 1], observed[CELLS_Z * CELLS_PHI + 1];
+            static double expected[CELLS + 1], observed[CELLS + 1];
             if (is_random(b))
                 continue; // its pdf serves for weighing only
-            double total = cell_probabilities(&b, wo, expected);
-            if (!(total <= 1 + 2e-3))
+            make_cells(&b, wo, &rng);
+            double total = 0;
+            for (int i = 0; i < cell_count; ++i) {
+                const struct cell *c = &cells[i];
+                observed[i] = expected[i] = 0;
+                if (c->children)
+                    continue;
+                double whole = gauss_of(&b, wo, c->s, c->phi, c->ds, c->dphi);
+                int least = whole * SEEDS < 0.5 * c->seeds ? 4 : 0; // more is there than these points see
+                total += expected[i] = probability_of(&b, wo, c->s, c->phi, c->ds, c->dphi, whole, 0, least);
+            }
+            if (!(total <= 1 + 5e-4))
                 test_fail(__FILE__, __LINE__, "%s, set %d: the pdf integrates to %g", m->name, set, total);
             ++tested;
-            memset(observed, 0, sizeof observed);
+            observed[cell_count] = 0; // elsewhere
             for (int i = 0; i < n; ++i) {
                 struct sr_bsdf_sample s;
+                int depth;
                 float u = uniform(&rng);
                 bool drawn = sr_bsdf_sample(&b, wo, u, square(&rng), SR_RADIANCE, &s);
                 EXPECT(!drawn || !s.pdf_is_proportional);
-                observed[drawn && !(s.lobe & SR_LOBE_SPECULAR) ? cell_of(s.wi) : CELLS_Z * CELLS_PHI] += 1;
+                observed[drawn && !(s.lobe & SR_LOBE_SPECULAR) ? cell_of(s.wi, &depth) : cell_count] += 1;
             }
-            for (int i = 0; i < CELLS_Z * CELLS_PHI; ++i)
-                expected[i] *= n;
+            for (int i = 0; i < cell_count; ++i)
+                if (!cells[i].children)
+                    expected[i] = n * expected[i] + 1e-4; // a sliver of a cell may have escaped all points
             double elsewhere = n * (1 - total);
-            expected[CELLS_Z * CELLS_PHI] = elsewhere > 1e-2 * sqrt(n) ? elsewhere : 1e-9 * n;
-            if (elsewhere <= 1e-2 * sqrt(n) && observed[CELLS_Z * CELLS_PHI] == 0)
-                expected[CELLS_Z * CELLS_PHI] = 0;
+            expected[cell_count] = elsewhere > 1e-2 * sqrt(n) ? elsewhere : 1e-9 * n;
+            if (elsewhere <= 1e-2 * sqrt(n) && observed[cell_count] == 0)
+                expected[cell_count] = 0;
             double chi2, p;
             int degrees;
-            p = sr_chi2_test(observed, expected, CELLS_Z * CELLS_PHI + 1, 5, &chi2, &degrees);
+            p = sr_chi2_test(observed, expected, (size_t)cell_count + 1, 5, &chi2, &degrees);
             if (!(p > 1e-6))
                 test_fail(__FILE__, __LINE__, "%s, set %d: chi2 = %g of %d degrees, p = %g; %g of %g elsewhere",
-                          m->name, set, chi2, degrees, p, observed[CELLS_Z * CELLS_PHI], elsewhere);
+                          m->name, set, chi2, degrees, p, observed[cell_count], elsewhere);
         }
     }
 }
