@@ -109,7 +109,8 @@ struct sr_bsdf_model {
     X(multilayer_dielectric)                                                                                           \
     X(measured)                                                                                                        \
     X(sheen)                                                                                                           \
-    X(disney)
+    X(disney)                                                                                                          \
+    X(hair)
 
 #define SR_BSDF_DECLARE(name) extern const struct sr_bsdf_model sr_bsdf_##name;
 SR_BSDF_MODELS(SR_BSDF_DECLARE)
