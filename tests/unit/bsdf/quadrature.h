@@ -223,4 +223,19 @@ __attribute__((unused)) static struct sr_tally sampled_weights(const struct sr_b
         EXPECT_MEAN(weights, expected);                                                                                \
     } while (0)
 
+/* The same by the sampler alone: the mean weight of samples, on a lattice of 3 dimensions (Roberts 2018) of n points. */
+__attribute__((unused)) static double albedo_by_samples(const struct sr_bsdf *b, sr_vec3 wo, int side, int n)
+{
+    double sum = 0;
+    for (int k = 1; k <= n; ++k) {
+        double a = k * 0.8191725133961645, c = k * 0.6710436067037893, d = k * 0.5497004779019703;
+        sr_vec2 u = {(float)(c - floor(c)) * SR_ONE_MINUS_EPSILON, (float)(d - floor(d)) * SR_ONE_MINUS_EPSILON};
+        struct sr_bsdf_sample s;
+        if (sr_bsdf_sample(b, wo, (float)(a - floor(a)) * SR_ONE_MINUS_EPSILON, u, SR_IMPORTANCE, &s) &&
+            sr_same_hemisphere(wo, s.wi) == (side > 0))
+            sum += (double)(s.f[0] * fabsf(s.wi.z) / s.pdf);
+    }
+    return sum / n;
+}
+
 #endif
