@@ -6,6 +6,7 @@
  *   ray-replay efficiency eta = (time of the bare ray caster for the very rays of the render) / (time of the render),
  *   time to read, to build the acceleration structure, peak memory.
  * Each case runs in a process of its own, so that its peak memory is its own. */
+#include "bsdf_bench.h"
 #include "import/import.h"
 #include "render/render.h"
 
@@ -150,7 +151,7 @@ int main(int argc, char **argv)
 {
     static const struct option options[] = {
         {"case", required_argument, NULL, 'c'}, {"scene", required_argument, NULL, 'f'}, {"spp", required_argument, NULL, 's'}, {"size", required_argument, NULL, 'z'},
-        {"runs", required_argument, NULL, 'r'}, {"folder", required_argument, NULL, 'd'}, {"help", no_argument, NULL, 'h'}, {NULL, 0, NULL, 0},
+        {"runs", required_argument, NULL, 'r'}, {"folder", required_argument, NULL, 'd'}, {"bsdf", optional_argument, NULL, 'b'}, {"help", no_argument, NULL, 'h'}, {NULL, 0, NULL, 0},
     };
     struct settings s = {.folder = SR_BENCH_BUILD_DIR "/bench-scenes", .spp = 16, .size = 256, .runs = 3, .seed = 1};
     int option;
@@ -162,8 +163,9 @@ int main(int argc, char **argv)
         case 'z': s.size = (uint32_t)strtoul(optarg, NULL, 10); break;
         case 'r': s.runs = (int)strtol(optarg, NULL, 10); break;
         case 'd': s.folder = optarg; break;
+        case 'b': return bench_bsdfs(optarg);
         default:
-            printf("Usage: sr_bench [--case cornell|mesh|glossy|emitters] [--scene FILE] [--spp N] [--size PIXELS] [--runs N] [--folder SCENES]\n");
+            printf("Usage: sr_bench --bsdf[=MODEL]\n       sr_bench [--case cornell|mesh|glossy|emitters] [--scene FILE] [--spp N] [--size PIXELS] [--runs N] [--folder SCENES]\n");
             return option == 'h' ? 0 : 2;
         }
     s.runs = s.runs < 1 ? 1 : s.runs > MAX_RUNS ? MAX_RUNS : s.runs;
