@@ -123,12 +123,21 @@ struct sr_bsdf {
     _Alignas(64) unsigned char data[SR_BSDF_SIZE];
 };
 
+/* Before a call that returns a spectrum compilers leave the upper halves of the vector registers as they are, because of the
+ * value that will come back in them; the mathematical library's plain functions are several times slower then. */
+static inline void sr_bsdf_clean_vectors(void)
+{
+#ifdef __AVX__
+    __builtin_ia32_vzeroupper();
+#endif
+}
 static inline uint32_t sr_bsdf_lobes(const struct sr_bsdf *b)
 {
     return b->model->lobes(b->data);
 }
 static inline sr_spectrum sr_bsdf_f(const struct sr_bsdf *b, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode)
 {
+    sr_bsdf_clean_vectors();
     return b->model->f(b->data, wo, wi, mode);
 }
 static inline float sr_bsdf_pdf(const struct sr_bsdf *b, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode)
@@ -138,6 +147,7 @@ static inline float sr_bsdf_pdf(const struct sr_bsdf *b, sr_vec3 wo, sr_vec3 wi,
 static inline sr_spectrum sr_bsdf_f_pdf(const struct sr_bsdf *b, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode,
                                         float *pdf)
 {
+    sr_bsdf_clean_vectors();
     if (b->model->f_pdf)
         return b->model->f_pdf(b->data, wo, wi, mode, pdf);
     *pdf = b->model->pdf(b->data, wo, wi, mode);
