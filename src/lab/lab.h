@@ -186,4 +186,37 @@ sr_status sr_fit_points(struct sr_arena *arena, struct sr_fit_point *points, uin
                         const struct sr_specimen *model, const struct sr_fit_options *options, struct sr_fit *fit,
                         struct sr_error *error);
 
+/* ---- what pictures of a specimen show ---- */
+
+/* f [1/sr] of pairs of directions, radiance form; where f is a random estimate, its mean over that many seeds. */
+void sr_specimen_f(const struct sr_specimen *specimen, sr_spectrum lambda, const sr_vec3 *wo, const sr_vec3 *wi,
+                   size_t count, uint32_t seeds, sr_spectrum *f);
+/* What becomes of light that arrives from w, by the specimen's sampler with that many draws of a Sobol' net. */
+struct sr_specimen_albedo {
+    sr_spectrum reflected, transmitted; // [1] shares of the arriving flux
+};
+struct sr_specimen_albedo sr_specimen_albedo(const struct sr_specimen *specimen, sr_spectrum lambda, sr_vec3 w,
+                                             uint32_t draws);
+/* Where light from w goes as from a mirror or through a pane, and its share; how many there are. */
+struct sr_delta {
+    sr_vec3 direction;
+    sr_spectrum albedo; // [1]
+};
+enum { SR_DELTAS = 4 };
+int sr_specimen_deltas(const struct sr_specimen *specimen, sr_spectrum lambda, sr_vec3 w,
+                       struct sr_delta deltas[SR_DELTAS]);
+
+/* Colour under D65 by 48 wavelengths of 8 nm from 384 to 760 nm: a few sets after each other. Of values that are 1 at all
+ * wavelengths, Y is 1 and the colour is white. */
+enum { SR_COLOUR_SETS = 48 / SR_LAMBDA_COUNT };
+sr_spectrum sr_colour_lambda(int set);
+void sr_colour_add(int set, sr_spectrum values, double xyz[3]);
+
+/* A ball of the specimen, seen from afar, as sRGB: size * size * 3 bytes, the top row first, on white. The sky has a bright
+ * round light of 24 deg at the upper left, over a horizon; point: nothing but a sun of half a degree there. Light passes
+ * through a ball that transmits. The tangent runs along the circles of latitude. */
+enum sr_ball_light { SR_BALL_SKY, SR_BALL_POINT };
+sr_status sr_specimen_ball(const struct sr_specimen *specimen, enum sr_ball_light light, uint32_t size,
+                           uint32_t samples, uint8_t *srgb, struct sr_error *error);
+
 #endif

@@ -126,6 +126,45 @@ void sr_canvas_line(struct plot_canvas *canvas, double x0, double y0, double x1,
     cairo_stroke(canvas->cr);
 }
 
+/* Keeps the point that lies farthest from the chord, and so on in both halves (Ramer 1972, Douglas & Peucker 1973). */
+static void keep(const double (*p)[2], size_t first, size_t last, bool *kept)
+{
+    const double hair = 0.06; // [px]
+    while (last > first + 1) {
+        double dx = p[last][0] - p[first][0], dy = p[last][1] - p[first][1], length2 = dx * dx + dy * dy, most = 0;
+        size_t farthest = first;
+        for (size_t i = first + 1; i < last; ++i) {
+            double x = p[i][0] - p[first][0], y = p[i][1] - p[first][1];
+            double t = length2 > 0 ? fmin(1, fmax(0, (x * dx + y * dy) / length2)) : 0;
+            double off = hypot(x - t * dx, y - t * dy);
+            if (off > most) {
+                most = off;
+                farthest = i;
+            }
+        }
+        if (most < hair)
+            return;
+        kept[farthest] = true;
+        keep(p, first, farthest, kept);
+        first = farthest;
+    }
+}
+
+void sr_canvas_run(struct plot_canvas *canvas, const double (*points)[2], size_t count)
+{
+    bool *kept = sr_alloc(count + 1);
+    if (kept && count > 2)
+        keep(points, 0, count - 1, kept);
+    for (size_t i = 0; i < count; ++i) {
+        double x = sr_canvas_round(points[i][0]), y = sr_canvas_round(points[i][1]);
+        if (i == 0)
+            cairo_move_to(canvas->cr, x, y);
+        else if (!kept || kept[i] || i + 1 == count)
+            cairo_line_to(canvas->cr, x, y);
+    }
+    sr_free(kept);
+}
+
 sr_status sr_canvas_pixels(struct plot_canvas *canvas, const uint32_t *pixels, uint32_t width, uint32_t height,
                            struct plot_box box, bool is_smooth, struct sr_error *error)
 {

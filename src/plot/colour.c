@@ -12,7 +12,7 @@
 
 struct sr_plot_colour sr_plot_palette(int i)
 {
-    static const uint8_t rgb[8][3] = {{0, 114, 178},   {213, 94, 0},   {0, 158, 115},  {204, 121, 167},
+    static const uint8_t rgb[8][3] = {{0, 114, 178},  {213, 94, 0},  {0, 158, 115}, {204, 121, 167},
                                       {86, 180, 233}, {230, 159, 0}, {120, 94, 60}, {0, 0, 0}};
     const uint8_t *c = rgb[((i % 8) + 8) % 8];
     return (struct sr_plot_colour){(float)c[0] / 255, (float)c[1] / 255, (float)c[2] / 255, 1};

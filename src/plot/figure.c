@@ -1,75 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /* A figure: panels in rows and columns, a title above and a legend below, as SVG or PNG.
  *
- * The bytes depend on the description alone: no dates, and the numbers that cairo counts up from surface to surface in the
- * names inside an SVG are counted anew. Texts are drawn as outlines, so an SVG looks the same wherever it is shown; the font
+ * The bytes depend on the description alone. Texts are drawn as outlines, so an SVG looks the same wherever it is shown; the font
  * is DejaVu Sans or what the system has in its place, and without any font that which is built into cairo. */
 #include "plot/private.h"
 
 #include <cairo-svg.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-struct bytes {
-    struct sr_array array; // of char
-    bool is_full;
-};
 
 static cairo_status_t write_bytes(void *closure, const unsigned char *data, unsigned int length)
 {
-    struct bytes *bytes = closure;
-    size_t at = bytes->array.count;
-    if (at + length > bytes->array.capacity && !sr_array_reserve(&bytes->array, 2 * (at + length), 1)) {
-        bytes->is_full = true;
-        return CAIRO_STATUS_NO_MEMORY;
-    }
-    memcpy((char *)bytes->array.data + at, data, length);
-    bytes->array.count += length;
-    return CAIRO_STATUS_SUCCESS;
-}
-
-/* ---- names inside an SVG ---- */
-
-/* If a counted name such as surface17 begins at p, where an id or a reference to one stands: its letters' length. */
-static size_t counted_name(const char *p, const char *begin)
-{
-    static const char *const words[] = {"surface", "image", "clip", "mask", "pattern", "source", "glyph"};
-    bool is_id = p - begin >= 4 && memcmp(p - 4, "id=\"", 4) == 0;
-    bool is_reference = p > begin && p[-1] == '#';
-    for (size_t i = 0; (is_id || is_reference) && i < sizeof words / sizeof words[0]; ++i) {
-        size_t length = strlen(words[i]);
-        if (strncmp(p, words[i], length) == 0 && p[length] >= '0' && p[length] <= '9')
-            return strcmp(words[i], "surface") && strcmp(words[i], "image") ? 0 : length;
-    }
-    return 0;
-}
-
-static sr_status rename_counted(struct bytes *in, struct bytes *out, struct sr_error *error)
-{
-    enum { NAMES = 64 };
-    unsigned long known[NAMES];
-    int count = 0;
-    const char *begin = in->array.data, *end = begin + in->array.count - 1, *copied = begin;
-    for (const char *p = begin; p < end; ++p) {
-        size_t length = counted_name(p, begin);
-        if (!length)
-            continue;
-        char *after, name[24];
-        unsigned long number = strtoul(p + length, &after, 10);
-        int k = 0;
-        while (k < count && known[k] != number)
-            ++k;
-        if (k == count && count < NAMES)
-            known[count++] = number;
-        write_bytes(out, (const unsigned char *)copied, (unsigned)(p + length - copied));
-        int digits = snprintf(name, sizeof name, "%d", k + 1);
-        write_bytes(out, (const unsigned char *)name, (unsigned)digits);
-        copied = after;
-        p = after - 1;
-    }
-    write_bytes(out, (const unsigned char *)copied, (unsigned)(end - copied));
-    return out->is_full ? sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for a figure") : SR_OK;
+    struct plot_bytes *bytes = closure;
+    sr_plot_bytes_add(bytes, data, length);
+    return bytes->is_full ? CAIRO_STATUS_NO_MEMORY : CAIRO_STATUS_SUCCESS;
 }
 
 /* ---- layout ---- */
@@ -157,7 +100,7 @@ static void check_texts(const struct plot_canvas *canvas, struct sr_plot_check *
 
 /* ---- writing ---- */
 
-static cairo_surface_t *make_surface(const struct plot_canvas *canvas, struct bytes *bytes)
+static cairo_surface_t *make_surface(const struct plot_canvas *canvas, struct plot_bytes *bytes)
 {
     if (!canvas->is_vector)
         return cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)lround(canvas->width * canvas->pixels),
@@ -187,8 +130,8 @@ static void settle_text(cairo_t *cr) // the same measures on both kinds of surfa
     cairo_font_options_destroy(options);
 }
 
-static sr_status encode(const struct sr_plot_figure *figure, struct plot_canvas *canvas, struct bytes *raw,
-                        struct bytes *out, struct sr_error *error)
+static sr_status encode(const struct sr_plot_figure *figure, struct plot_canvas *canvas, struct plot_bytes *raw,
+                        struct plot_bytes *out, struct sr_error *error)
 {
     canvas->surface = make_surface(canvas, raw);
     canvas->cr = cairo_create(canvas->surface);
@@ -209,8 +152,10 @@ static sr_status encode(const struct sr_plot_figure *figure, struct plot_canvas 
         sr_fail(error, SR_ERROR_RESOURCE, "a figure of %g x %g px cannot be drawn: %s", canvas->width, canvas->height,
                 cairo_status_to_string(status));
     if (!error->status && canvas->is_vector) {
-        write_bytes(raw, (const unsigned char *)"", 1); // an end for those who look ahead
-        rename_counted(raw, out, error);
+        sr_plot_bytes_add(raw, "", 1); // an end for those who look ahead
+        sr_plot_shorten_svg(raw->array.data, out);
+        if (raw->is_full || out->is_full)
+            sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for a figure");
     }
     return error->status;
 }
@@ -225,11 +170,13 @@ sr_status sr_plot_encode(const struct sr_plot_figure *figure, enum sr_plot_forma
     uint32_t columns = columns_of(figure), rows = (figure->panel_count + columns - 1) / columns;
     struct plot_canvas canvas = {.width = figure->width > 0 ? figure->width : 420.0 * columns,
                                  .height = figure->height > 0 ? figure->height : 340.0 * rows,
-                                 .pixels = format == SR_PLOT_SVG ? 2 : figure->scale > 0 ? figure->scale : 1,
+                                 .pixels = format == SR_PLOT_SVG ? 2
+                                           : figure->scale > 0   ? figure->scale
+                                                                 : 1,
                                  .is_vector = format == SR_PLOT_SVG};
     if (!(canvas.width * canvas.pixels <= 16384 && canvas.height * canvas.pixels <= 16384))
         return sr_fail(error, SR_ERROR_INPUT, "a figure of %g x %g px is too large", canvas.width, canvas.height);
-    struct bytes raw = {0}, out = {0};
+    struct plot_bytes raw = {0}, out = {0};
     if (encode(figure, &canvas, &raw, &out, error) == SR_OK) {
         *data = out.array.data;
         *size = out.array.count;
@@ -246,12 +193,18 @@ sr_status sr_plot_encode(const struct sr_plot_figure *figure, enum sr_plot_forma
 
 sr_status sr_plot_write(const struct sr_plot_figure *figure, const char *path, struct sr_error *error)
 {
+    return sr_plot_write_checked(figure, path, NULL, error);
+}
+
+sr_status sr_plot_write_checked(const struct sr_plot_figure *figure, const char *path, struct sr_plot_check *check,
+                                struct sr_error *error)
+{
     bool is_svg = sr_path_has_ending(path, ".svg");
     if (!is_svg && !sr_path_has_ending(path, ".png"))
         return sr_fail(error, SR_ERROR_USAGE, "%s: a figure's name ends with .svg or .png", path);
     char *data;
     size_t size;
-    if (sr_plot_encode(figure, is_svg ? SR_PLOT_SVG : SR_PLOT_PNG, &data, &size, NULL, error) != SR_OK)
+    if (sr_plot_encode(figure, is_svg ? SR_PLOT_SVG : SR_PLOT_PNG, &data, &size, check, error) != SR_OK)
         return error->status;
     sr_file_write(path, data, size, error);
     sr_free(data);

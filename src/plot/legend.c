@@ -2,7 +2,8 @@
 /* Which colour is which curve: rows below a figure, or a box in the emptiest corner of a panel. */
 #include "plot/private.h"
 
-static const double sample = 26, gap = 6, apart = 18, height = 17; // [px] line, before its text, between entries, of a row
+static const double sample = 26, gap = 6, apart = 18,
+                    height = 17; // [px] line, before its text, between entries, of a row
 
 struct sr_plot_colour sr_plot_curve_colour(const struct sr_plot_curve *curves, uint32_t i)
 {

@@ -2,6 +2,8 @@
 /* Curves over x and y, with bands about them, points, and marks across the panel. */
 #include "plot/private.h"
 
+enum { MARK = 1000 }; // points that a mark's word counts for, that no legend lies on it
+
 static sr_status settle(struct sr_plot_axis *x, struct sr_plot_axis *y, const struct sr_plot_panel *panel,
                         struct sr_error *error)
 {
@@ -59,18 +61,16 @@ static void draw_curve(struct plot_canvas *canvas, struct plot_box box, const st
 {
     sr_canvas_colour(canvas, colour);
     sr_canvas_dash(canvas, c->dash, c->width > 0 ? c->width : 1.6);
-    bool is_down = false;
-    for (uint32_t i = 0; i < c->count && !c->has_no_line; ++i) {
-        if (isnan(c->x[i]) || isnan(c->y[i])) {
-            is_down = false;
-            continue;
+    double(*run)[2] = sr_arena_alloc(&canvas->arena, ((size_t)c->count + 1) * sizeof *run);
+    size_t length = 0;
+    for (uint32_t i = 0; i <= c->count && run && !c->has_no_line; ++i) {
+        if (i < c->count && !isnan(c->x[i]) && !isnan(c->y[i])) {
+            run[length][0] = place_x(box, x, c->x[i]);
+            run[length++][1] = place_y(box, y, c->y[i]);
+        } else {
+            sr_canvas_run(canvas, (const double(*)[2])run, length);
+            length = 0;
         }
-        double px = sr_canvas_round(place_x(box, x, c->x[i])), py = sr_canvas_round(place_y(box, y, c->y[i]));
-        if (is_down)
-            cairo_line_to(canvas->cr, px, py);
-        else
-            cairo_move_to(canvas->cr, px, py);
-        is_down = true;
     }
     cairo_stroke(canvas->cr);
     cairo_set_dash(canvas->cr, NULL, 0, 0);
@@ -81,33 +81,15 @@ static void draw_curve(struct plot_canvas *canvas, struct plot_box box, const st
         }
 }
 
-static void draw_marks(struct plot_canvas *canvas, struct plot_box box, const struct sr_plot_axis *x,
-                       const struct sr_plot_panel *panel)
-{
-    for (uint32_t i = 0; i < panel->mark_count; ++i) {
-        double at = place_x(box, x, panel->marks[i].x);
-        if (!(at >= box.x0 && at <= box.x1))
-            continue;
-        sr_canvas_colour(canvas, PLOT_SOFT_INK);
-        sr_canvas_dash(canvas, SR_PLOT_DASHED, 1);
-        sr_canvas_line(canvas, at, box.y0, at, box.y1);
-        cairo_set_dash(canvas->cr, NULL, 0, 0);
-        struct plot_type type = {.across = 1, .along_height = 1, .is_upward = true, .has_halo = true,
-                                 .colour = PLOT_SOFT_INK};
-        bool fits_left = at - box.x0 > 16;
-        sr_canvas_text(canvas, fits_left ? at - 13 : at + 4, box.y0 + 6, &type, panel->marks[i].label);
-    }
-}
-
 /* Where the curves run, a point each few px: what a legend must not lie on. */
 static size_t trail(struct plot_canvas *canvas, struct plot_box box, const struct sr_plot_axis *x,
                     const struct sr_plot_axis *y, const struct sr_plot_panel *panel, double (**points)[2])
 {
-    enum { STEPS = 8, MARK = 2000 }; // a word hidden is worse than a curve hidden
+    enum { STEPS = 8 };
     size_t room = 0, count = 0;
     for (uint32_t c = 0; c < panel->curve_count; ++c)
         room += (size_t)panel->curves[c].count * STEPS;
-    *points = sr_arena_alloc(&canvas->arena, (room + panel->mark_count * MARK) * sizeof **points);
+    *points = sr_arena_alloc(&canvas->arena, (room + (size_t)panel->mark_count * MARK + 1) * sizeof **points);
     if (!*points)
         return 0;
     for (uint32_t c = 0; c < panel->curve_count; ++c)
@@ -121,12 +103,41 @@ static size_t trail(struct plot_canvas *canvas, struct plot_box box, const struc
                 (*points)[count][1] = (1 - t) * place_y(box, y, k->y[i - 1]) + t * place_y(box, y, k->y[i]);
             }
         }
-    for (uint32_t i = 0; i < panel->mark_count; ++i)
-        for (int s = 0; s < MARK; ++s, ++count) {
-            (*points)[count][0] = place_x(box, x, panel->marks[i].x) - (s % 2 ? 13 : 0);
-            (*points)[count][1] = box.y0 + fmin(80, box.y1 - box.y0) * s / MARK;
-        }
     return count;
+}
+
+/* Marks with their words along the line, above or below, where fewer points of curves lie. Their places join the points, each
+ * so often that no legend goes there. */
+static size_t draw_marks(struct plot_canvas *canvas, struct plot_box box, const struct sr_plot_axis *x,
+                         const struct sr_plot_panel *panel, double (*points)[2], size_t count)
+{
+    size_t total = count;
+    for (uint32_t i = 0; i < panel->mark_count; ++i) {
+        double at = place_x(box, x, panel->marks[i].x);
+        if (!(at >= box.x0 && at <= box.x1))
+            continue;
+        sr_canvas_colour(canvas, PLOT_SOFT_INK);
+        sr_canvas_dash(canvas, SR_PLOT_DASHED, 1);
+        sr_canvas_line(canvas, at, box.y0, at, box.y1);
+        cairo_set_dash(canvas->cr, NULL, 0, 0);
+        struct plot_type type = {.along_height = 1, .is_upward = true, .has_halo = true, .colour = PLOT_SOFT_INK};
+        double length = sr_canvas_text_width(canvas, &type, panel->marks[i].label) + 10;
+        double left = at - box.x0 > 16 ? at - 13 : at + 4;
+        size_t above = 0, below = 0;
+        for (size_t k = 0; k < count; ++k)
+            if (points[k][0] > left - 3 && points[k][0] < left + 14) {
+                above += points[k][1] < box.y0 + length;
+                below += points[k][1] > box.y1 - length;
+            }
+        bool is_above = above <= below;
+        type.across = is_above ? 1 : 0;
+        sr_canvas_text(canvas, left, is_above ? box.y0 + 6 : box.y1 - 6, &type, panel->marks[i].label);
+        for (int k = 0; k < MARK; ++k, ++total) {
+            points[total][0] = left + 6;
+            points[total][1] = is_above ? box.y0 + length * k / MARK : box.y1 - length * k / MARK;
+        }
+    }
+    return total;
 }
 
 sr_status sr_plot_draw_lines(struct plot_canvas *canvas, struct plot_box cell, const struct sr_plot_panel *panel,
@@ -146,11 +157,13 @@ sr_status sr_plot_draw_lines(struct plot_canvas *canvas, struct plot_box cell, c
     for (uint32_t c = 0; c < panel->curve_count; ++c)
         draw_curve(canvas, box, &x, &y, &panel->curves[c], sr_plot_curve_colour(panel->curves, c));
     cairo_restore(canvas->cr);
-    draw_marks(canvas, box, &x, panel);
-    if (!panel->has_no_legend) {
-        double(*points)[2];
-        size_t count = trail(canvas, box, &x, &y, panel, &points);
+    double(*points)[2];
+    size_t count = trail(canvas, box, &x, &y, panel, &points);
+    if (!points)
+        return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for the panel \"%s\"",
+                       panel->title ? panel->title : "");
+    count = draw_marks(canvas, box, &x, panel, points, count);
+    if (!panel->has_no_legend)
         sr_plot_legend_corner(canvas, box, panel->curves, panel->curve_count, (const double(*)[2])points, count);
-    }
     return SR_OK;
 }

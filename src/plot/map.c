@@ -42,19 +42,27 @@ static sr_status draw_scale(struct plot_canvas *canvas, struct plot_box box, dou
     return SR_OK;
 }
 
+static uint32_t value_pixel(const struct sr_plot_panel *panel, const struct sr_plot_axis *z, uint32_t row,
+                            uint32_t column)
+{
+    double value = panel->values[(size_t)row * panel->columns + column];
+    double t = isnan(value) ? value : fmax(0, fmin(1, sr_plot_place(z, value)));
+    return sr_canvas_pixel(sr_plot_scale_colour(panel->scale, t));
+}
+
 sr_status sr_plot_draw_map(struct plot_canvas *canvas, struct plot_box cell, const struct sr_plot_panel *panel,
                            struct sr_error *error)
 {
     struct sr_plot_axis x = panel->x, y = panel->y, z = panel->z;
     struct plot_range range = {0};
     size_t count = (size_t)panel->rows * panel->columns;
-    for (size_t i = 0; i < count; ++i)
+    for (size_t i = 0; i < count && !panel->pixels; ++i)
         sr_plot_range_add(&range, panel->values[i], z.is_log);
     if (panel->scale == SR_PLOT_DIVERGING && range.some && !z.is_log && z.from == z.to) {
         z.to = fmax(fabs(range.lo), fabs(range.hi)); // nought is white
         z.from = -z.to;
     }
-    if (!sr_plot_axis_settle(&z, &range, true))
+    if (!panel->pixels && !sr_plot_axis_settle(&z, &range, true))
         return sr_fail(error, SR_ERROR_INPUT, "the panel \"%s\" has no finite%s value",
                        panel->title ? panel->title : "", z.is_log ? " and positive" : "");
     if (x.from == x.to || y.from == y.to)
@@ -62,7 +70,7 @@ sr_status sr_plot_draw_map(struct plot_canvas *canvas, struct plot_box cell, con
                        panel->title ? panel->title : "");
     cell = sr_plot_title(canvas, cell, panel->title);
     struct sr_plot_ticks ticks;
-    double right = scale_width(canvas, &z, cell.y1 - cell.y0 - 60, &ticks);
+    double right = panel->pixels ? 0 : scale_width(canvas, &z, cell.y1 - cell.y0 - 60, &ticks);
     struct plot_box box = sr_plot_frame(canvas, cell, &x, &y, right, false);
 
     // each pixel of the picture lies within one value: no reader blurs them
@@ -73,10 +81,11 @@ sr_status sr_plot_draw_map(struct plot_canvas *canvas, struct plot_box cell, con
         return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for a map of %u x %u pixels", wide, tall);
     for (uint32_t j = 0; j < tall; ++j)
         for (uint32_t i = 0; i < wide; ++i) {
-            uint32_t row = (uint32_t)((uint64_t)(tall - 1 - j) * panel->rows / tall);
-            double value = panel->values[(size_t)row * panel->columns + (uint64_t)i * panel->columns / wide];
-            double t = isnan(value) ? value : fmax(0, fmin(1, sr_plot_place(&z, value)));
-            pixels[(size_t)j * wide + i] = sr_canvas_pixel(sr_plot_scale_colour(panel->scale, t));
+            uint32_t row = (uint32_t)((uint64_t)j * panel->rows / tall); // from the top
+            uint32_t column = (uint32_t)((uint64_t)i * panel->columns / wide);
+            pixels[(size_t)j * wide + i] =
+                panel->pixels ? sr_canvas_rgb(&panel->pixels[3 * ((size_t)row * panel->columns + column)])
+                              : value_pixel(panel, &z, panel->rows - 1 - row, column);
         }
     if (sr_canvas_pixels(canvas, pixels, wide, tall, box, false, error) != SR_OK)
         return error->status;
@@ -84,7 +93,7 @@ sr_status sr_plot_draw_map(struct plot_canvas *canvas, struct plot_box cell, con
     cairo_set_line_width(canvas->cr, 1);
     cairo_rectangle(canvas->cr, box.x0, box.y0, box.x1 - box.x0, box.y1 - box.y0);
     cairo_stroke(canvas->cr);
-    return draw_scale(canvas, box, cell.x1, &z, &ticks, panel->scale, error);
+    return panel->pixels ? SR_OK : draw_scale(canvas, box, cell.x1, &z, &ticks, panel->scale, error);
 }
 
 sr_status sr_plot_draw_picture(struct plot_canvas *canvas, struct plot_box cell, const struct sr_plot_panel *panel,
@@ -102,10 +111,8 @@ sr_status sr_plot_draw_picture(struct plot_canvas *canvas, struct plot_box cell,
     if (!pixels)
         return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for a picture of %u x %u pixels", panel->columns,
                        panel->rows);
-    for (size_t i = 0; i < (size_t)panel->rows * panel->columns; ++i) {
-        const uint8_t *p = &panel->pixels[3 * i];
-        pixels[i] = 0xff000000u | (uint32_t)p[0] << 16 | (uint32_t)p[1] << 8 | p[2];
-    }
+    for (size_t i = 0; i < (size_t)panel->rows * panel->columns; ++i)
+        pixels[i] = sr_canvas_rgb(&panel->pixels[3 * i]);
     double size = fmin((cell.x1 - cell.x0 - 8) / panel->columns, (cell.y1 - cell.y0 - 4) / panel->rows);
     double cx = (cell.x0 + cell.x1) / 2, cy = (cell.y0 + cell.y1) / 2;
     double half_x = size * panel->columns / 2, half_y = size * panel->rows / 2;

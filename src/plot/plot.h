@@ -73,9 +73,9 @@ struct sr_plot_mark {
 };
 
 enum sr_plot_kind {
-    SR_PLOT_LINES,   // curves over x and y
-    SR_PLOT_POLAR,   // curves over angle x [°] and radius y; half a disc where x is within -90 … 90, else a whole one
-    SR_PLOT_MAP,     // values over x and y, in colours
+    SR_PLOT_LINES, // curves over x and y
+    SR_PLOT_POLAR, // curves over angle x [°] and radius y; half a disc where x is within -90 … 90, else a whole one
+    SR_PLOT_MAP,   // values over x and y, in colours
     SR_PLOT_PICTURE, // pixels
     SR_PLOT_SURFACE, // bodies in space
 };
@@ -84,10 +84,11 @@ enum sr_plot_kind {
 struct sr_plot_body {
     const double (*points)[3]; // [any] rows * columns, row by row
     uint32_t rows, columns;
-    struct sr_plot_colour fill; // a = 0: edges only
-    struct sr_plot_colour edge; // a = 0: no edges
-    bool is_flat;               // not shaded
-    bool is_ground;             // drawn before all else: nothing lies behind it
+    struct sr_plot_colour fill;         // a = 0: edges only
+    struct sr_plot_colour edge;         // a = 0: no edges
+    uint32_t edge_every;                // only each n-th line of the grid has edges; 0: each
+    bool is_flat;                       // not shaded
+    bool is_ground;                     // drawn before all else: nothing lies behind it
     const struct sr_plot_colour *fills; // of each quadrilateral, (rows - 1) * (columns - 1); NULL: fill
 };
 struct sr_plot_arrow {
@@ -99,7 +100,7 @@ struct sr_plot_arrow {
 };
 struct sr_plot_view {
     double azimuth, elevation; // [°] of the eye about the z axis from +x, and above the plane; parallel projection
-    double zoom;               // [1] 0: 1
+    double zoom;               // [1] about the middle of the bodies that are no ground; 0: 1
 };
 
 struct sr_plot_panel {
@@ -111,8 +112,8 @@ struct sr_plot_panel {
     uint32_t curve_count, mark_count;
     bool has_no_legend;
 
-    const double *values; // [unit of z] of a map: rows * columns, the lowest y first; NaN: no value
-    const uint8_t *pixels; // [1] of a picture: sRGB, three bytes each, the top row first
+    const double *values;  // [unit of z] of a map: rows * columns, the lowest y first; NaN: no value
+    const uint8_t *pixels; // [1] of a picture: sRGB, three bytes each, the top row first; of a map: in place of values
     uint32_t rows, columns;
     enum sr_plot_scale scale;
 
@@ -150,5 +151,7 @@ sr_status sr_plot_encode(const struct sr_plot_figure *figure, enum sr_plot_forma
                          struct sr_plot_check *check, struct sr_error *error);
 /* The same to a file, .svg or .png by its ending. */
 sr_status sr_plot_write(const struct sr_plot_figure *figure, const char *path, struct sr_error *error);
+sr_status sr_plot_write_checked(const struct sr_plot_figure *figure, const char *path, struct sr_plot_check *check,
+                                struct sr_error *error);
 
 #endif

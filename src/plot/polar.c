@@ -11,6 +11,7 @@ struct disc {
     double cx, cy, radius; // [px]
     double from, to;       // [°]
     bool is_whole;
+    double left, right; // [px] of the cell
 };
 
 static const double pi = 3.14159265358979;
@@ -44,6 +45,8 @@ static sr_status settle(struct sr_plot_axis *radius, bool *is_whole, const struc
     if (!sr_plot_axis_settle(radius, &range, false))
         return sr_fail(error, SR_ERROR_INPUT, "the panel \"%s\" has nothing finite%s to show",
                        panel->title ? panel->title : "", radius->is_log ? " and positive" : "");
+    if (radius->is_log && panel->y.from == panel->y.to)
+        radius->from = fmin(radius->from, 1e-4 * radius->to); // a lobe is told from a circle
     return SR_OK;
 }
 
@@ -62,8 +65,9 @@ static void text_beyond(struct plot_canvas *canvas, const struct disc *d, double
 {
     type.across = 0.5 - 0.5 * sin(angle_deg * pi / 180);
     type.along_height = 0.5 - 0.5 * cos(angle_deg * pi / 180);
-    sr_canvas_text(canvas, across(d, angle_deg, d->radius + beyond), height(d, angle_deg, d->radius + beyond), &type,
-                   text);
+    double width = sr_canvas_text_width(canvas, &type, text), x = across(d, angle_deg, d->radius + beyond);
+    x = fmin(fmax(x, d->left + type.across * width), d->right - (1 - type.across) * width);
+    sr_canvas_text(canvas, x, height(d, angle_deg, d->radius + beyond), &type, text);
 }
 
 static bool is_near_mark(const struct sr_plot_panel *panel, double angle_deg, double within_deg)
@@ -109,8 +113,8 @@ static void draw_radii(struct plot_canvas *canvas, const struct disc *d, const s
 {
     struct sr_plot_ticks ticks;
     sr_plot_ticks(radius, (int)fmax(2, d->radius / 38), &ticks);
-    struct plot_type type = {.size = PLOT_TICK_SIZE - 1, .across = 0.5, .along_height = d->is_whole ? 0.5 : 1,
-                             .has_halo = d->is_whole};
+    struct plot_type type = {
+        .size = PLOT_TICK_SIZE - 1, .across = 0.5, .along_height = d->is_whole ? 0.5 : 1, .has_halo = d->is_whole};
     double last = -INFINITY;
     for (int i = 0; i < ticks.count; ++i) {
         double r = sr_plot_place(radius, ticks.at[i]) * d->radius;
@@ -138,19 +142,17 @@ static void draw_radii(struct plot_canvas *canvas, const struct disc *d, const s
 static void draw_curve(struct plot_canvas *canvas, const struct disc *d, const struct sr_plot_axis *radius,
                        const struct sr_plot_curve *c, struct sr_plot_colour colour)
 {
-    bool is_down = false;
-    for (uint32_t i = 0; i < c->count; ++i) {
-        if (isnan(c->x[i]) || isnan(c->y[i])) {
-            is_down = false;
-            continue;
+    double(*run)[2] = sr_arena_alloc(&canvas->arena, ((size_t)c->count + 1) * sizeof *run);
+    size_t length = 0;
+    for (uint32_t i = 0; i <= c->count && run; ++i) {
+        if (i < c->count && !isnan(c->x[i]) && !isnan(c->y[i])) {
+            double r = fmin(fmax(sr_plot_place(radius, c->y[i]), 0), 3) * d->radius;
+            run[length][0] = across(d, c->x[i], r);
+            run[length++][1] = height(d, c->x[i], r);
+        } else {
+            sr_canvas_run(canvas, (const double(*)[2])run, length);
+            length = 0;
         }
-        double r = fmin(fmax(sr_plot_place(radius, c->y[i]), 0), 3) * d->radius;
-        double px = sr_canvas_round(across(d, c->x[i], r)), py = sr_canvas_round(height(d, c->x[i], r));
-        if (is_down)
-            cairo_line_to(canvas->cr, px, py);
-        else
-            cairo_move_to(canvas->cr, px, py);
-        is_down = true;
     }
     sr_canvas_colour(canvas, colour);
     sr_canvas_dash(canvas, c->dash, c->width > 0 ? c->width : 1.6);
@@ -162,7 +164,7 @@ sr_status sr_plot_draw_polar(struct plot_canvas *canvas, struct plot_box cell, c
                              struct sr_error *error)
 {
     struct sr_plot_axis radius = panel->y;
-    struct disc d = {.from = -90, .to = 90};
+    struct disc d = {.from = -90, .to = 90, .left = cell.x0, .right = cell.x1};
     if (settle(&radius, &d.is_whole, panel, error) != SR_OK)
         return error->status;
     if (d.is_whole) {
@@ -170,7 +172,8 @@ sr_status sr_plot_draw_polar(struct plot_canvas *canvas, struct plot_box cell, c
         d.to = 180;
     }
     cell = sr_plot_title(canvas, cell, panel->title);
-    double rows = panel->has_no_legend ? 0 : sr_plot_legend_rows(canvas, cell, panel->curves, panel->curve_count, false);
+    double rows =
+        panel->has_no_legend ? 0 : sr_plot_legend_rows(canvas, cell, panel->curves, panel->curve_count, false);
     double below = d.is_whole ? 2 * ring + 8 : 38, side = 34;
     double wide = cell.x1 - cell.x0, tall = cell.y1 - cell.y0 - rows - below - ring - 5;
     d.radius = fmin(wide / 2 - side, d.is_whole ? tall / 2 : tall);

@@ -43,6 +43,8 @@ void sr_canvas_text(struct plot_canvas *canvas, double x, double y, const struct
 void sr_canvas_colour(struct plot_canvas *canvas, struct sr_plot_colour colour);
 void sr_canvas_dash(struct plot_canvas *canvas, enum sr_plot_dash dash, double width);
 void sr_canvas_line(struct plot_canvas *canvas, double x0, double y0, double x1, double y1);
+/* A run of a curve as a path, without the points that it misses by less than a hair when they are left out. */
+void sr_canvas_run(struct plot_canvas *canvas, const double (*points)[2], size_t count);
 /* sRGB pixels, four bytes each as cairo keeps them, stretched over a box. */
 sr_status sr_canvas_pixels(struct plot_canvas *canvas, const uint32_t *pixels, uint32_t width, uint32_t height,
                            struct plot_box box, bool is_smooth, struct sr_error *error);
@@ -50,6 +52,10 @@ static inline uint32_t sr_canvas_pixel(struct sr_plot_colour c)
 {
     return 0xff000000u | (uint32_t)lrintf(c.r * 255) << 16 | (uint32_t)lrintf(c.g * 255) << 8 |
            (uint32_t)lrintf(c.b * 255);
+}
+static inline uint32_t sr_canvas_rgb(const uint8_t rgb[3])
+{
+    return 0xff000000u | (uint32_t)rgb[0] << 16 | (uint32_t)rgb[1] << 8 | rgb[2];
 }
 static inline double sr_canvas_round(double v) // to 1/16 px: shorter files
 {
@@ -90,6 +96,16 @@ double sr_plot_legend_rows(struct plot_canvas *canvas, struct plot_box box, cons
 /* One entry below the other, in the corner of the box where the fewest of the points lie. */
 void sr_plot_legend_corner(struct plot_canvas *canvas, struct plot_box box, const struct sr_plot_curve *curves,
                            uint32_t count, const double (*points)[2], size_t point_count);
+
+/* ---- svg.c ---- */
+
+struct plot_bytes {
+    struct sr_array array; // of char
+    bool is_full;          // there was no memory for all
+};
+void sr_plot_bytes_add(struct plot_bytes *bytes, const void *data, size_t length);
+/* cairo's SVG, a text that ends with NUL, without what changes from time to time and what goes without saying. */
+void sr_plot_shorten_svg(const char *svg, struct plot_bytes *out);
 
 /* ---- the kinds of panels ---- */
 

@@ -19,6 +19,7 @@ struct piece { // a mesh, or a bit of an arrow
     uint32_t order; // where depths are equal
     bool is_ground;
     uint32_t corners;
+    uint32_t edges; // bit k: the edge from corner k to the next is drawn
     double p[4][3];
     struct sr_plot_colour fill, edge;
     enum sr_plot_dash dash;
@@ -101,11 +102,14 @@ static void add_body(struct sr_array *pieces, const struct eye *eye, const struc
 {
     for (uint32_t row = 0; row + 1 < body->rows; ++row)
         for (uint32_t column = 0; column + 1 < body->columns; ++column) {
-            struct piece piece = {.corners = 4, .edge = body->edge, .width = 0.6, .is_ground = body->is_ground};
+            struct piece piece = {.corners = 4, .edge = body->edge, .width = 0.55, .is_ground = body->is_ground};
             const uint32_t at[4][2] = {{row, column}, {row, column + 1}, {row + 1, column + 1}, {row + 1, column}};
             for (int i = 0; i < 4; ++i)
                 for (int k = 0; k < 3; ++k)
                     piece.p[i][k] = body->points[(size_t)at[i][0] * body->columns + at[i][1]][k];
+            uint32_t n = body->edge_every ? body->edge_every : 1;
+            piece.edges = (row % n == 0 ? 1u : 0) | ((column + 1) % n == 0 ? 2u : 0) | ((row + 1) % n == 0 ? 4u : 0) |
+                          (column % n == 0 ? 8u : 0);
             piece.fill = body->fills ? body->fills[(size_t)row * (body->columns - 1) + column] : body->fill;
             if (!body->is_flat && piece.fill.a > 0)
                 piece.fill = shaded(piece.fill, eye, &piece);
@@ -125,7 +129,7 @@ static void add_arrow(struct sr_array *pieces, const struct eye *eye, const stru
     for (int i = 0; i < BITS; ++i) { // in bits: each lies before or behind of what is near it
         if (arrow->dash != SR_PLOT_SOLID && i % 2)
             continue;
-        struct piece piece = {.corners = 2, .edge = arrow->colour, .width = 1.8};
+        struct piece piece = {.corners = 2, .edges = 1, .edge = arrow->colour, .width = 1.8};
         for (int k = 0; k < 3; ++k) {
             piece.p[0][k] = tail[k] + d[k] * shown * i / BITS;
             piece.p[1][k] = tail[k] + d[k] * shown * (i + 1) / BITS;
@@ -164,35 +168,58 @@ static void draw(struct plot_canvas *canvas, cairo_t *cr, const struct eye *eye,
             sr_canvas_colour(canvas, p[i].fill);
             cairo_fill_preserve(cr);
         }
-        bool has_edge = p[i].edge.a > 0;
-        if (has_edge || (p[i].fill.a >= 1 && p[i].corners == 4)) { // without edges: closes the seams between meshes
-            sr_canvas_colour(canvas, has_edge ? p[i].edge : p[i].fill);
-            cairo_set_line_width(cr, p[i].width);
+        cairo_set_line_width(cr, p[i].width);
+        if (p[i].fill.a >= 1 && p[i].corners == 4 && p[i].edges != 15) { // closes the seams between meshes
+            sr_canvas_colour(canvas, p[i].fill);
             cairo_stroke(cr);
         }
+        cairo_new_path(cr);
+        for (uint32_t k = 0; k < p[i].corners && p[i].edge.a > 0; ++k) {
+            const double *from = p[i].p[k], *to = p[i].p[(k + 1) % p[i].corners];
+            if (!(p[i].edges >> k & 1))
+                continue;
+            cairo_move_to(cr, sr_canvas_round(seen_x(eye, from)), sr_canvas_round(seen_y(eye, from)));
+            cairo_line_to(cr, sr_canvas_round(seen_x(eye, to)), sr_canvas_round(seen_y(eye, to)));
+        }
+        sr_canvas_colour(canvas, p[i].edge);
+        cairo_stroke(cr);
         cairo_new_path(cr);
     }
     cairo_set_line_cap(cr, CAIRO_LINE_CAP_BUTT);
     canvas->cr = before;
 }
 
-/* So many meshes are no drawing any more: as pixels they take less room in a file. */
+/* So many meshes are no drawing any more: as pixels they take less room in a file. Three times as fine and without
+ * smoothing of their own, then made smaller: no seams show between them. */
 static sr_status draw_pixels(struct plot_canvas *canvas, struct plot_box box, const struct eye *eye,
                              const struct sr_array *pieces, struct sr_error *error)
 {
-    double wide = ceil(box.x1 - box.x0), tall = ceil(box.y1 - box.y0);
-    cairo_surface_t *image = cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)(wide * canvas->pixels),
-                                                        (int)(tall * canvas->pixels));
-    cairo_t *cr = cairo_create(image);
+    const double finer = 3;
+    double wide = ceil((box.x1 - box.x0) * canvas->pixels), tall = ceil((box.y1 - box.y0) * canvas->pixels);
+    cairo_surface_t *fine = cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)(wide * finer), (int)(tall * finer));
+    cairo_surface_t *image = cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)wide, (int)tall);
+    cairo_t *cr = cairo_create(fine);
     cairo_set_source_rgb(cr, 1, 1, 1);
     cairo_paint(cr);
-    cairo_scale(cr, canvas->pixels, canvas->pixels);
+    cairo_set_antialias(cr, CAIRO_ANTIALIAS_NONE);
+    cairo_scale(cr, canvas->pixels * finer, canvas->pixels * finer);
     cairo_translate(cr, -box.x0, -box.y0);
     draw(canvas, cr, eye, pieces);
     bool is_good = cairo_status(cr) == CAIRO_STATUS_SUCCESS;
     cairo_destroy(cr);
+
+    cr = cairo_create(image);
+    cairo_scale(cr, 1 / finer, 1 / finer);
+    cairo_set_source_surface(cr, fine, 0, 0);
+    cairo_pattern_set_filter(cairo_get_source(cr), CAIRO_FILTER_GOOD);
+    cairo_paint(cr);
+    is_good &= cairo_status(cr) == CAIRO_STATUS_SUCCESS;
+    cairo_destroy(cr);
+    cairo_surface_destroy(fine);
+
     cairo_save(canvas->cr);
-    cairo_translate(canvas->cr, box.x0, box.y0);
+    cairo_translate(canvas->cr, round(box.x0 * canvas->pixels) / canvas->pixels,
+                    round(box.y0 * canvas->pixels) / canvas->pixels);
     cairo_scale(canvas->cr, 1 / canvas->pixels, 1 / canvas->pixels);
     cairo_set_source_surface(canvas->cr, image, 0, 0);
     cairo_paint(canvas->cr);
@@ -201,28 +228,38 @@ static sr_status draw_pixels(struct plot_canvas *canvas, struct plot_box box, co
     return is_good ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for a picture of a surface");
 }
 
-/* Turns the scale and the origin so that all is within the box. */
+struct extent {
+    struct plot_range x, y;
+};
+
+static void reach(struct extent *e, const struct eye *eye, const double p[3])
+{
+    sr_plot_range_add(&e->x, dot(eye->right, p), false);
+    sr_plot_range_add(&e->y, dot(eye->up, p), false);
+}
+
+/* The scale at which all is within the box; zoomed in, the bodies are in its middle. */
 static bool fit(struct eye *eye, struct plot_box box, const struct sr_plot_panel *panel)
 {
-    struct plot_range x = {0}, y = {0};
-    eye->scale = 1;
+    struct extent all = {0}, bodies = {0};
     for (uint32_t b = 0; b < panel->body_count; ++b)
         for (size_t i = 0; i < (size_t)panel->bodies[b].rows * panel->bodies[b].columns; ++i) {
-            sr_plot_range_add(&x, dot(eye->right, panel->bodies[b].points[i]), false);
-            sr_plot_range_add(&y, dot(eye->up, panel->bodies[b].points[i]), false);
+            reach(&all, eye, panel->bodies[b].points[i]);
+            if (!panel->bodies[b].is_ground)
+                reach(&bodies, eye, panel->bodies[b].points[i]);
         }
-    for (uint32_t a = 0; a < panel->arrow_count; ++a)
-        for (int end = 0; end < 2; ++end) {
-            const double *p = end ? panel->arrows[a].to : panel->arrows[a].from;
-            sr_plot_range_add(&x, dot(eye->right, p), false);
-            sr_plot_range_add(&y, dot(eye->up, p), false);
-        }
-    if (!x.some || !(x.hi > x.lo || y.hi > y.lo))
+    for (uint32_t a = 0; a < panel->arrow_count; ++a) {
+        reach(&all, eye, panel->arrows[a].from);
+        reach(&all, eye, panel->arrows[a].to);
+    }
+    if (!all.x.some || !(all.x.hi > all.x.lo || all.y.hi > all.y.lo))
         return false;
-    eye->scale = fmin((box.x1 - box.x0) / (x.hi - x.lo), (box.y1 - box.y0) / (y.hi - y.lo));
-    eye->scale *= panel->view.zoom > 0 ? panel->view.zoom : 1;
-    eye->x = (box.x0 + box.x1) / 2 - eye->scale * (x.lo + x.hi) / 2;
-    eye->y = (box.y0 + box.y1) / 2 + eye->scale * (y.lo + y.hi) / 2;
+    eye->scale = fmin((box.x1 - box.x0) / (all.x.hi - all.x.lo), (box.y1 - box.y0) / (all.y.hi - all.y.lo));
+    double zoom = panel->view.zoom > 0 ? panel->view.zoom : 1;
+    eye->scale *= zoom;
+    struct extent middle = zoom > 1 && bodies.x.some ? bodies : all;
+    eye->x = (box.x0 + box.x1) / 2 - eye->scale * (middle.x.lo + middle.x.hi) / 2;
+    eye->y = (box.y0 + box.y1) / 2 + eye->scale * (middle.y.lo + middle.y.hi) / 2;
     return isfinite(eye->scale);
 }
 
@@ -269,7 +306,7 @@ sr_status sr_plot_draw_surface(struct plot_canvas *canvas, struct plot_box cell,
         add_arrow(&pieces, &eye, &panel->arrows[a]);
     if (pieces.count)
         qsort(pieces.data, pieces.count, sizeof(struct piece), by_depth);
-    if (canvas->is_vector && pieces.count > MANY) {
+    if (pieces.count > MANY) {
         draw_pixels(canvas, cell, &eye, &pieces, error);
     } else {
         cairo_save(canvas->cr);
