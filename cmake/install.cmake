@@ -6,10 +6,10 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-set_target_properties(steradian PROPERTIES C_VISIBILITY_PRESET hidden)
+set_target_properties(steradian steradian_double PROPERTIES C_VISIBILITY_PRESET hidden)
 set(STERADIAN_INSTALLED steradian)
 if(BUILD_SHARED_LIBS)
-  add_library(steradian_shared SHARED $<TARGET_OBJECTS:steradian>)
+  add_library(steradian_shared SHARED $<TARGET_OBJECTS:steradian> $<TARGET_OBJECTS:steradian_double>)
   set_target_properties(steradian_shared PROPERTIES OUTPUT_NAME steradian EXPORT_NAME steradian LINKER_LANGUAGE C
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_include_directories(steradian_shared INTERFACE $<INSTALL_INTERFACE:include>)

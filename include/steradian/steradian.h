@@ -4,6 +4,7 @@
 #define STERADIAN_STERADIAN_H
 
 #include "base.h"
+#include "bsdf.h"
 #include "picture.h"
 #include "world.h"
 

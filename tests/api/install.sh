@@ -30,7 +30,7 @@ libdir=$(pkg-config --variable=libdir steradian)
 if [ "$shared" = ON ]; then
     static=
     # nothing but the public interface is seen from outside
-    seen=$(nm -D --defined-only "$libdir/libsteradian.so" | awk '{print $3}' | grep -v '^sr_\(version\|world\|picture\|reading\)' || true)
+    seen=$(nm -D --defined-only "$libdir/libsteradian.so" | awk '{print $3}' | grep -v '^sr_\(version\|world\|picture\|reading\|brdf\)' || true)
     [ -z "$seen" ] || { echo "failed: the shared library shows $seen" >&2; exit 1; }
 fi
 export LD_LIBRARY_PATH="$libdir"
@@ -40,6 +40,8 @@ echo "== pkg-config, C"
 # shellcheck disable=SC2046,SC2086 # lists of words
 "$cc" -std=c17 -Wall -Wextra -Werror $flags -o "$folder/consumer_c" "$consumer/consumer.c" $(pkg-config --cflags --libs $static steradian) -lm
 "$folder/consumer_c" "$scene"
+"$cc" -std=c17 -Wall -Wextra -Werror $flags -o "$folder/brdf" "$source_dir/examples/brdf.c" $(pkg-config --cflags --libs $static steradian) -lm
+"$folder/brdf"
 echo "== pkg-config, C++"
 # shellcheck disable=SC2046,SC2086
 "$cxx" -std=c++17 -Wall -Wextra -Werror $flags -o "$folder/consumer_cxx" "$folder/consumer.cpp" $(pkg-config --cflags --libs $static steradian)
