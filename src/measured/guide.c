@@ -64,6 +64,13 @@ static int side_block(const struct guide *g, bool transmitted)
 
 float sr_measured_pdf(const struct sr_measured *m, sr_vec3 wo, sr_vec3 wi)
 {
+    if (m->pdf) {
+        if (!m->has_back && wo.z < 0) {
+            wo.z = -wo.z;
+            wi.z = -wi.z;
+        }
+        return wo.z != 0 && wi.z != 0 ? m->pdf(m->data, wo, wi) : 0;
+    }
     const struct guide *g = &m->guide;
     int block = side_block(g, wo.z * wi.z < 0);
     if (wo.z == 0 || wi.z == 0 || block < 0)
@@ -95,6 +102,14 @@ bool sr_measured_sample(const struct sr_measured *m, sr_vec3 wo, float u_lobe, s
     const struct guide *g = &m->guide;
     if (wo.z == 0)
         return false;
+    if (m->sample) {
+        bool flips = !m->has_back && wo.z < 0;
+        bool drawn = m->sample(m->data, (sr_vec3){wo.x, wo.y, flips ? -wo.z : wo.z}, u_lobe, u, wi);
+        if (drawn && flips)
+            wi->z = -wi->z;
+        *pdf = drawn ? sr_measured_pdf(m, wo, *wi) : 0;
+        return *pdf > 0 && isfinite(*pdf);
+    }
     struct view v = view_of(g, wo);
     bool transmitted;
     if (u_lobe < COSINE_SHARE) {
@@ -176,6 +191,8 @@ static bool slice_build(const struct sr_measured *m, sr_vec3 wo, struct sr_arena
 sr_status guide_build(struct sr_measured *m, struct sr_arena *arena)
 {
     struct guide *g = &m->guide;
+    if (m->pdf)
+        return SR_OK;
     *g = (struct guide){.faces = m->has_back ? 2 : 1,
                         .thetas = m->is_isotropic ? 16 : 9,
                         .phis = m->is_isotropic ? 1 : 12,

@@ -6,7 +6,8 @@
  * A basis divides the polar angle into rings and each ring into n patches, the first of them centred at phi = 0; a patch's
  * projected solid angle is pi (cos^2 theta_1 - cos^2 theta_2) / n. The patch of arriving light is that of the opposite azimuth, so
  * that the diagonal holds the mirror direction and the straight way through. J. H. Klems 1994; conventions of LBNL's WINDOW and
- * of Radiance (G. Ward). WINDOW's front is our side of +z. Narrow peaks are spread over their patch, 10 deg or so wide. */
+ * of Radiance (G. Ward). WINDOW's front is our side of +z. Directions are drawn exactly: a patch by B Omega_p, inside of it by the
+ * cosine, so that p(wi) = f |cos_theta_i| / SUM of B Omega_p. Narrow peaks are spread over their patch, 10 deg or so wide. */
 #include "measured/private.h"
 
 struct matrix {
@@ -14,7 +15,16 @@ struct matrix {
     float *values; // out, in, channel; NULL: not measured
 };
 
+/* Where light may come from, seen from one face: sums of B Omega over the patches of wi, a row for each patch of wo. */
+struct chooser {
+    const struct matrix *matrix; // NULL: from nowhere
+    bool is_reversed;            // the matrix knows the other way only: wo is where its light arrives
+    int rows, columns;
+    float *sums; // columns + 1 a row
+};
+
 struct klems {
+    struct chooser choosers[2][2]; // face of wo, passing through
     struct xml_basis bases[XML_BASES + 3];
     int basis_count;
     struct matrix matrices[4]; // enum xml_direction
@@ -65,6 +75,124 @@ static sr_spectrum f(const void *data, sr_vec3 wo, sr_vec3 wi, sr_spectrum lambd
     return channels_eval(&k->channels, matrix->values, &at, lambda);
 }
 
+static float omega_of(const struct xml_basis *b, int ring) // [sr] projected
+{
+    float lo = ring ? cosf(b->upper[ring - 1]) : 1, hi = cosf(b->upper[ring]);
+    return SR_PI * (lo - hi) * (lo + hi) / (float)b->phis[ring];
+}
+
+static int ring_of(const struct xml_basis *b, int patch_index)
+{
+    int ring = 0;
+    while (ring < b->rings - 1 && patch_index >= b->first[ring + 1])
+        ++ring;
+    return ring;
+}
+
+static float mean_value(const struct klems *k, const struct matrix *m, int in, int out)
+{
+    const float *v = m->values + ((size_t)out * (size_t)m->in->total + (size_t)in) * (size_t)k->channels.count;
+    return k->channels.count == 3 ? (v[0] + v[1] + v[2]) / 3 : v[0];
+}
+
+static const float *row_of(const struct chooser *c, sr_vec3 wo)
+{
+    if (!c->matrix)
+        return NULL;
+    int row = c->is_reversed ? patch(c->matrix->in, -wo.x, -wo.y, wo.z) : patch(c->matrix->out, wo.x, wo.y, wo.z);
+    return c->sums + (size_t)row * (size_t)(c->columns + 1);
+}
+
+static float pdf(const void *data, sr_vec3 wo, sr_vec3 wi)
+{
+    const struct klems *k = data;
+    const struct chooser *choosers = k->choosers[wo.z < 0], *c = &choosers[wo.z * wi.z < 0];
+    if (!c->matrix)
+        return 0;
+    const float *reflected = row_of(&choosers[0], wo), *passed = row_of(&choosers[1], wo);
+    float total = (reflected ? reflected[choosers[0].columns] : 0) + (passed ? passed[choosers[1].columns] : 0);
+    if (!(total > 0))
+        return 0;
+    int in = c->is_reversed ? patch(c->matrix->in, -wo.x, -wo.y, wo.z) : patch(c->matrix->in, -wi.x, -wi.y, wi.z);
+    int out = c->is_reversed ? patch(c->matrix->out, wi.x, wi.y, wi.z) : patch(c->matrix->out, wo.x, wo.y, wo.z);
+    return mean_value(k, c->matrix, in, out) * fabsf(wi.z) / total;
+}
+
+static bool sample(const void *data, sr_vec3 wo, float u_lobe, sr_vec2 u, sr_vec3 *wi)
+{
+    const struct klems *k = data;
+    const struct chooser *choosers = k->choosers[wo.z < 0];
+    const float *rows[2] = {row_of(&choosers[0], wo), row_of(&choosers[1], wo)};
+    float mass[2] = {rows[0] ? rows[0][choosers[0].columns] : 0, rows[1] ? rows[1][choosers[1].columns] : 0};
+    if (!(mass[0] + mass[1] > 0))
+        return false;
+    int side = u_lobe * (mass[0] + mass[1]) >= mass[0];
+    const struct chooser *c = &choosers[side];
+    const float *sums = rows[side];
+    float target = u.x * mass[side];
+    int lo = 0, hi = c->columns;
+    while (hi - lo > 1) {
+        int middle = (lo + hi) / 2;
+        if (sums[middle] <= target)
+            lo = middle;
+        else
+            hi = middle;
+    }
+    float width = sums[lo + 1] - sums[lo], share = width > 0 ? sr_clamp((target - sums[lo]) / width, 0, 1) : 0.5f;
+    const struct xml_basis *b = c->is_reversed ? c->matrix->out : c->matrix->in;
+    int ring = ring_of(b, lo);
+    float s0 = ring ? sinf(b->upper[ring - 1]) : 0, s1 = sinf(b->upper[ring]);
+    float sin2 = s0 * s0 + share * (s1 - s0) * (s1 + s0);
+    float phi = 2 * SR_PI * ((float)(lo - b->first[ring]) + u.y - 0.5f) / (float)b->phis[ring];
+    sr_vec3 w = sr_spherical_direction(sqrtf(sin2), sr_safe_sqrt(1 - sin2), phi);
+    if (!c->is_reversed) { // patches of arriving light lie opposite
+        w.x = -w.x;
+        w.y = -w.y;
+    }
+    w.z = (wo.z < 0) != (side == 1) ? -w.z : w.z;
+    *wi = w;
+    return w.z != 0;
+}
+
+static bool chooser_build(struct klems *k, struct chooser *c, struct sr_arena *arena)
+{
+    const struct xml_basis *over = c->is_reversed ? c->matrix->out : c->matrix->in;
+    c->rows = c->is_reversed ? c->matrix->in->total : c->matrix->out->total;
+    c->columns = over->total;
+    c->sums = sr_arena_alloc(arena, (size_t)c->rows * (size_t)(c->columns + 1) * sizeof(float));
+    for (int row = 0; c->sums && row < c->rows; ++row) {
+        float *sums = c->sums + (size_t)row * (size_t)(c->columns + 1);
+        double sum = 0;
+        for (int ring = 0; ring < over->rings; ++ring)
+            for (int p = over->first[ring]; p < over->first[ring] + over->phis[ring]; ++p) {
+                sum += (double)omega_of(over, ring) *
+                       (double)mean_value(k, c->matrix, c->is_reversed ? row : p, c->is_reversed ? p : row);
+                sums[p + 1] = (float)sum;
+            }
+    }
+    return c->sums != NULL;
+}
+
+static bool choosers_build(struct klems *k, const struct sr_measured *m, struct sr_arena *arena)
+{
+    for (int face = 0; face < 2; ++face)
+        for (int through = 0; through < 2; ++through) {
+            struct chooser *c = &k->choosers[face][through];
+            const struct matrix *of = &k->matrices[through ? XML_TRANSMISSION_FRONT : XML_REFLECTION_FRONT];
+            int from_back = through ? !face : face; // where light for this view comes from
+            c->matrix = &of[from_back];
+            if (!c->matrix->values && (through || !m->has_back)) {
+                c->matrix = &of[!from_back];
+                c->is_reversed = through;
+            }
+            if (!c->matrix->values)
+                c->matrix = NULL;
+            if (c->matrix && !chooser_build(k, c, arena))
+                return false;
+        }
+    return true;
+}
+
 /* SUM over patches of light leaving of B Omega_p, Omega_p = pi (cos^2 theta_1 - cos^2 theta_2) / n */
 static sr_spectrum albedo(const void *data, sr_vec3 wi, uint32_t side, sr_spectrum lambda)
 {
@@ -81,8 +209,7 @@ static sr_spectrum albedo(const void *data, sr_vec3 wi, uint32_t side, sr_spectr
     const struct xml_basis *over = reversed ? matrix->in : matrix->out;
     int fixed = reversed ? patch(matrix->out, wi.x, wi.y, wi.z) : patch(matrix->in, -wi.x, -wi.y, wi.z);
     for (int ring = 0; ring < over->rings; ++ring) {
-        float lo = ring ? cosf(over->upper[ring - 1]) : 1, hi = cosf(over->upper[ring]);
-        float omega = SR_PI * (lo - hi) * (lo + hi) / (float)over->phis[ring];
+        float omega = omega_of(over, ring);
         for (int p = over->first[ring]; p < over->first[ring] + over->phis[ring]; ++p) {
             size_t out = (size_t)(reversed ? fixed : p), in = (size_t)(reversed ? p : fixed);
             struct corners at = {1, {(out * (size_t)matrix->in->total + in) * (size_t)k->channels.count}, {1}};
@@ -190,6 +317,10 @@ sr_status read_klems(const struct xml_file *x, struct sr_measured *m)
     m->data = k;
     m->f = f;
     m->albedo = albedo;
+    m->pdf = pdf;
+    m->sample = sample;
+    if (!choosers_build(k, m, s->arena))
+        return sr_fail(s->error, SR_ERROR_RESOURCE, "%s: not enough memory", s->name);
     m->channels = k->channels;
     m->is_isotropic = false;
     return SR_OK;

@@ -87,6 +87,9 @@ struct sr_measured {
     sr_spectrum (*f)(const void *data, sr_vec3 wo, sr_vec3 wi, sr_spectrum lambda);
     /* share of the light from wi that leaves on that side, where it is a sum over patches; NULL: by quadrature of f */
     sr_spectrum (*albedo)(const void *data, sr_vec3 wi, uint32_t side, sr_spectrum lambda);
+    /* density [1/sr] and draw of wi, where the data tell them better than guide; wo.z > 0 where has_back is false */
+    float (*pdf)(const void *data, sr_vec3 wo, sr_vec3 wi);
+    bool (*sample)(const void *data, sr_vec3 wo, float u_lobe, sr_vec2 u, sr_vec3 *wi);
     struct channels channels;
     int32_t quantity; // enum sr_measured_quantity, never AUTO
     uint32_t sides, back_sides;
