@@ -41,7 +41,8 @@ static void ready(void *self, const struct sr_bsdf_at *at)
     float d = sr_spectrum_mean(m->reflectance), s = sr_spectrum_mean(m->specular) * m->N * 2 * SR_PI / (n + 2);
     if (m->normalisation == 1)
         s *= powf(m->largest2, 0.5f * n);
-    m->diffuse_share = d > 0 ? sr_clamp(d / (d + s), 0.05f, 0.95f) : 0;
+    bool is_glossy = !sr_spectrum_is_black(m->specular) && m->largest2 > 0;
+    m->diffuse_share = d > 0 ? is_glossy ? sr_clamp(d / (d + s), 0.05f, 0.95f) : 1 : 0;
 }
 
 static uint32_t lobes(const void *self)

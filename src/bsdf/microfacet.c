@@ -112,4 +112,5 @@ const struct sr_bsdf_model sr_bsdf_microfacet = {
     .pdf = pdf,
     .sample = sample,
     .f_pdf = f_pdf,
+    .largest_albedo = 1.8f, // toward grazing: Phong's slopes, Smith's masking of Beckmann's, alpha 1, Fresnel one
 };

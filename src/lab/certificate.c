@@ -30,7 +30,7 @@ static const struct {
     [CHECK_SUPPORT] = {"support", "1/sr", 0},
     [CHECK_LOBES] = {"lobes", "1", 0},
     [CHECK_DOUBLE] = {"double", "1", 2e-3, true},
-    [CHECK_GRAZING] = {"grazing", "1", 1.02},
+    [CHECK_GRAZING] = {"grazing", "1", 1},
     [CHECK_NORMAL] = {"normal incidence", "1", 0.05},
     [CHECK_ENDS] = {"range ends", "1", 1},
 };
@@ -183,7 +183,7 @@ static void judge(const struct findings *all, const struct work *w, double asymm
                                                            : SR_FAILED;
         }
         if ((i == CHECK_ENERGY || i == CHECK_ENDS || i == CHECK_GRAZING) && f->count && largest_albedo > 1) {
-            check->limit = largest_albedo * (i == CHECK_GRAZING ? 1.02 : 1);
+            check->limit = largest_albedo;
             if (!f->failed && f->measured > 1 + 1e-4)
                 check->verdict = SR_DOCUMENTED;
         }

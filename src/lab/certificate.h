@@ -124,6 +124,8 @@ void lab_check_energy(struct certifying *c);   // largest albedo, closed form
 void lab_check_end(struct certifying *c, const char *name, bool at_max);
 /* Largest E(wo) [1] over wavelengths by n samples that fill the square evenly; *k: of which wavelength. */
 double lab_albedo(struct subject *s, sr_vec3 wo, uint32_t n, int *k);
+/* Whether E(wo) at a wavelength is above what is allowed, by fresh random samples; their mean. */
+bool lab_gains_energy(struct certifying *c, sr_vec3 wo, int k, double *mean);
 /* What f and pdf change under directions that are a few roundings apart: the largest of eight movements, fourfold. */
 void lab_sensitivity(const struct subject *s, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, sr_spectrum *df,
                      float *dpdf);

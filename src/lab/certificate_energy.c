@@ -64,6 +64,14 @@ static void estimate(struct certifying *c, sr_vec3 wo, uint32_t n, struct sr_tal
     c->findings->evaluations += n;
 }
 
+bool lab_gains_energy(struct certifying *c, sr_vec3 wo, int k, double *mean)
+{
+    struct sr_tally E[SR_LAMBDA_COUNT] = {0};
+    estimate(c, wo, c->samples / 2, E);
+    *mean = E[k].mean;
+    return E[k].mean - c->z * sr_tally_standard_error(&E[k]) > c->subject->largest_albedo * (1 + 1e-5) + 2e-5;
+}
+
 static void check_closed_form(struct certifying *c, uint32_t n)
 {
     struct subject *s = c->subject;
