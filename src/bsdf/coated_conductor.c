@@ -134,6 +134,9 @@ static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum s
 
 const struct sr_bsdf_model sr_bsdf_coated_conductor = {
     .name = "coated_conductor",
+    .title = "Metal under a dielectric coat",
+    .source = "Y. Guo, M. Hasan & S. Zhao, Position-free Monte Carlo simulation for arbitrary layered BSDFs, 2018",
+    .limits = "f is a random walk: right in the mean; ends after max_depth events",
     .params = params,
     .size = sizeof(struct sr_bsdf_coated),
     .is_random = true,

@@ -268,6 +268,9 @@ static sr_spectrum albedo(const void *self, sr_vec3 wo)
 
 const struct sr_bsdf_model sr_bsdf_coated_diffuse = {
     .name = "coated_diffuse",
+    .title = "Matte base under a dielectric coat",
+    .source = "Y. Guo, M. Hasan & S. Zhao, Position-free Monte Carlo simulation for arbitrary layered BSDFs, 2018",
+    .limits = "f is a random walk: right in the mean; ends after max_depth events",
     .params = params,
     .size = sizeof(struct sr_bsdf_coated),
     .is_random = true,

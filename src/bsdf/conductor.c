@@ -78,6 +78,10 @@ static sr_spectrum albedo(const void *self, sr_vec3 wo)
 
 const struct sr_bsdf_model sr_bsdf_conductor = {
     .name = "conductor",
+    .title = "Metal: mirror or GGX microfacets",
+    .source = "B. Walter et al., Microfacet models for refraction, 2007; E. Heitz, Understanding the masking-shadowing "
+              "function, 2014",
+    .limits = "light that meets two facets is lost: a rough metal is too dark, at alpha = 1 by up to two thirds",
     .params = params,
     .size = sizeof(struct sr_bsdf_conductor),
     .lobes = lobes,

@@ -83,6 +83,9 @@ static sr_spectrum albedo(const void *self, sr_vec3 wo)
 
 const struct sr_bsdf_model sr_bsdf_dielectric = {
     .name = "dielectric",
+    .title = "Glass: clear or of GGX microfacets",
+    .source = "B. Walter et al., Microfacet models for refraction through rough surfaces, 2007",
+    .limits = "light that meets two facets is lost; one index for all wavelengths of a path",
     .params = params,
     .size = sizeof(struct sr_bsdf_dielectric),
     .lobes = lobes,

@@ -57,6 +57,8 @@ static sr_spectrum albedo(const void *self, sr_vec3 wo)
 
 const struct sr_bsdf_model sr_bsdf_diffuse = {
     .name = "diffuse",
+    .title = "Lambert",
+    .source = "J. H. Lambert, Photometria, 1760",
     .params = params,
     .size = sizeof(struct sr_bsdf_diffuse),
     .lobes = lobes,

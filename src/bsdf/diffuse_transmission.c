@@ -79,6 +79,8 @@ static sr_spectrum albedo(const void *self, sr_vec3 wo)
 
 const struct sr_bsdf_model sr_bsdf_diffuse_transmission = {
     .name = "diffuse_transmission",
+    .title = "Lambert, reflecting and transmitting",
+    .source = "J. H. Lambert, Photometria, 1760; both sides of a thin sheet in one medium",
     .params = params,
     .size = sizeof(struct sr_bsdf_diffuse_transmission),
     .lobes = lobes,

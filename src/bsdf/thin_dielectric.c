@@ -80,6 +80,10 @@ static sr_spectrum albedo(const void *self, sr_vec3 wo)
 
 const struct sr_bsdf_model sr_bsdf_thin_dielectric = {
     .name = "thin_dielectric",
+    .title = "Pane of clear glass",
+    .source =
+        "G. G. Stokes, On the intensity of the light reflected from or transmitted through a pile of plates, 1862",
+    .limits = "no absorption, no displacement of the ray, no interference",
     .params = params,
     .size = sizeof(struct sr_bsdf_thin_dielectric),
     .lobes = lobes,
