@@ -63,9 +63,9 @@ static void measure_energy(const struct sr_measured *m, sr_spectrum lambda, stru
     }
     int phis = m->is_isotropic ? 1 : 8;
     for (int face = 0; face < (m->has_back ? 2 : 1); ++face)
-        for (int i = 0; i <= 17; ++i)
+        for (int i = 0; i <= 18; ++i)
             for (int j = 0; j < (i ? phis : 1); ++j) {
-                double theta = 5.0 * i, phi = 45.0 * j;
+                double theta = i < 18 ? 5.0 * i : 88, phi = 45.0 * j;
                 sr_vec3 wi = direction(theta, phi, face);
                 sr_spectrum E = sr_measured_albedo(m, wi, SR_MEASURED_REFLECTION, lambda, 48) +
                                 sr_measured_albedo(m, wi, SR_MEASURED_TRANSMISSION, lambda, 48);

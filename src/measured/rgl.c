@@ -11,6 +11,9 @@
  * rgb [phi, theta, 3, y, x]; jacobian; luminance is what others draw directions by, here guide.c does. */
 #include "measured/private.h"
 
+#define LEAST_COSINE                                                                                                   \
+    0.02f // closer to grazing no instrument looks, and interpolated products do not vanish as the cosine does
+
 struct map { // a bilinear function of the unit square
     int nx, ny;
     float *values;
@@ -158,7 +161,7 @@ static sr_spectrum f(const void *data, sr_vec3 wo, sr_vec3 wi, sr_spectrum lambd
             (size_t)s.slice[k >> 2] * slice + (size_t)(iy + (k >> 1 & 1)) * (size_t)r->nx + (size_t)(ix + (k & 1));
         at.weight[at.count++] = w;
     }
-    float scale = 1 / wi.z;
+    float scale = 1 / sr_max(wi.z, LEAST_COSINE);
     if (r->has_jacobian) {
         float sigma = map_at(&r->sigma, u_o.x, u_o.y);
         scale = sigma > 0 ? scale * map_at(&r->ndf, u_m.x, u_m.y) / (4 * sigma) : 0;
