@@ -101,6 +101,16 @@ static const struct row reflection[] = {
     {"hapke albedo=.3 b=.3 c=.4 surge=1 surge_width=.06 theta_bar=20", 0, 550, 6, {.078036, .080716, .086067, .089164}},
     {"hapke albedo=.3 b=.3 c=.4 surge=1 surge_width=.06 version=1981", 0, 550, 6, {.080428, .083585, .097583, .126558}},
     {"hapke albedo=.9 b=0 c=0 surge=0 version=1981", 0, 550, 12, {.404754959068, .423913459401, .486743912359, .566352568368}},
+    // the older and the newer practice
+    {"lafortune reflectance=0 specular=1 normalisation=none c_x=-.95 c_y=-.95 c_z=.85 exponent=10", 0, 550, 6, {.103083, .117167, .113137, .065603}},
+    {"coupled reflectance=.5 specular=.05", 0, 550, 6, {.525000, .525021, .539844, .708028}},
+    {"sheen alpha=.5", 0, 550, 6, {.083333, .124507, .267132, .476357}},
+    {"sheen alpha=.2", 0, 550, 6, {.019642, .051406, .212796, .538518}},
+    // (.644677 and .787558 at 80 deg by two quadratures of ours; the source prints .644675 and .787556)
+    {"disney reflectance=.5 roughness=.5", 0, 550, 5, {.539635, .539326, .559672, .644675}},
+    {"disney reflectance=.5 roughness=.5 metallic=1", 0, 550, 6, {.457920, .452315, .438647, .468901}},
+    {"disney reflectance=.5 roughness=.5 subsurface=1", 0, 550, 5, {.413783, .447131, .595003, .787556}},
+    {"disney reflectance=1 roughness=1", 0, 550, 6, {1.048021, 1.047541, 1.075627, 1.307418}},
     // coats
     {"coated_diffuse reflectance=.5 coat_eta=1.5 thickness=0 max_depth=100", 0, 550, 6, {.316071, .317156, .351113, .563785}},
 };
@@ -120,6 +130,9 @@ static const struct single {
     {"ward_gmd reflectance=0 specular=1 alpha_x=.5 alpha_y=.5", 89, 550, 6, .933182},
     {"blinn_phong reflectance=0 specular=1 exponent=20 normalisation=energy_plus_8", 0, 550, 6, 1.060658},
     {"blinn_phong reflectance=0 specular=1 exponent=100 normalisation=energy_plus_8", 0, 550, 6, 1.018100},
+    {"sheen alpha=.1", 85, 550, 6, .826488},
+    {"sheen alpha=.1", 89, 550, 6, 1.175364},
+    {"sheen alpha=.3", 89, 550, 6, .798956},
     {"dielectric eta=1.5", 45, 550, 12, .0502399110122},
     {"dielectric eta=1.5", 80, 550, 11, .387704354691},
     {"conductor eta=.43 k=2.455", 0, 550, 12, .786915760491},
@@ -140,7 +153,7 @@ static double albedo(const struct sr_specimen *s, const struct single *row, doub
     struct sr_beam from = {.kind = SR_BEAM_DIRECTION, .theta = row->theta, .phi = phi}, to = beam("hemisphere");
     struct sr_reflectance r = {0};
     struct sr_error error = {0};
-    sr_status status = in_double ? sr_reflectance_cubature(s, SR_BLACK + (float)row->lambda, &from, &to, 5e-8, &r, &error)
+    sr_status status = in_double ? sr_reflectance_cubature(s, SR_BLACK + (float)row->lambda, &from, &to, row->digits > 6 ? 5e-8 : 5e-7, &r, &error)
                                  : sr_reflectance_cubature_single(s, SR_BLACK + (float)row->lambda, &from, &to, 3e-6, &r, &error);
     if (status != SR_OK)
         test_fail(__FILE__, __LINE__, "%s: %s", row->words, error.text);
@@ -173,6 +186,27 @@ static void compare(bool in_double)
     EXPECT_EQUAL_INT(disagree, 0);
 }
 
+/* One lobe alone, as what a model reflects with it and does not without. */
+static const struct lobe {
+    const char *with, *without;
+    int digits;
+    double E[4];
+} lobes[] = {
+    {"disney clearcoat=1 clearcoat_gloss=1", "disney clearcoat=0", 6, {.009370, .009370, .015041, .045660}},
+    {"disney reflectance=1 specular=0 roughness=.5", "disney reflectance=0 specular=0 roughness=.5", 8, {1.00595238095, 1.00516746422, 1.00832015749, 1.02538775313}},
+};
+
+TEST(albedos_of_single_lobes)
+{
+    for (size_t i = 0; i < sizeof lobes / sizeof *lobes; ++i)
+        for (int k = 0; k < 4; ++k) {
+            struct single a = {lobes[i].with, theta[k], 550, 6, 0}, b = {lobes[i].without, theta[k], 550, 6, 0};
+            struct sr_specimen with = specimen(a.words), without = specimen(b.words);
+            double E = albedo(&with, &a, 0, true) - albedo(&without, &b, 0, true);
+            EXPECT_NEAR(E, lobes[i].E[k], 1.1 * pow(10, -lobes[i].digits) + 2e-7 * lobes[i].E[k]);
+        }
+}
+
 TEST(albedos_in_single_precision)
 {
     compare(false);
@@ -183,16 +217,49 @@ TEST(albedos_in_double_precision)
     compare(true);
 }
 
+/* The mean over all directions, as Kulla & Conty's compensation needs it. */
+TEST(mean_albedos_of_facets)
+{
+    static const double alpha[] = {.1, .25, .5, .75, 1}, expected[] = {.972046, .882323, .700240, .536303, .409137};
+    struct sr_beam all = beam("hemisphere");
+    for (int i = 0; i < 5; ++i) {
+        char words[100];
+        snprintf(words, sizeof words, GGX "alpha_x=%g alpha_y=%g", alpha[i], alpha[i]);
+        struct sr_specimen s = specimen(words);
+        struct sr_reflectance r;
+        struct sr_error error = {0};
+        EXPECT_EQUAL_INT(sr_reflectance_cubature(&s, SR_BLACK + 550, &all, &all, 1e-6, &r, &error), SR_OK);
+        EXPECT(r.has_converged);
+        EXPECT_NEAR(r.value[0], expected[i], 1.5e-6);
+    }
+}
+
 /* ---- what passes ---- */
 
 static const struct passing {
+    const char *words;
     double eta, alpha;
     int digits;
     double T[4]; // in the form for importance: power
 } transmission[] = {
-    {1.5, .1, 6, {.959198, .956545, .906365, .687656}},       {1.5, .3, 6, {.952793, .945140, .887517, .776590}},
-    {1.5, .5, 6, {.939932, .924850, .848696, .757577}},       {.66666667, .1, 5, {.946422, .879783, .023048, .008185}},
-    {.66666667, .3, 5, {.850745, .686404, .131079, .039412}}, {.66666667, .5, 4, {.707683, .564751, .225266, .069992}},
+    {"dielectric", 1.5, .1, 6, {.959198, .956545, .906365, .687656}},
+    {"dielectric", 1.5, .3, 6, {.952793, .945140, .887517, .776590}},
+    {"dielectric", 1.5, .5, 6, {.939932, .924850, .848696, .757577}},
+    {"dielectric", .66666667, .1, 5, {.946422, .879783, .023048, .008185}},
+    {"dielectric", .66666667, .3, 5, {.850745, .686404, .131079, .039412}},
+    {"dielectric", .66666667, .5, 4, {.707683, .564751, .225266, .069992}},
+    {"microfacet_dielectric masking=product", 1.5, .1, 6, {.959198, .956545, .906355, .687441}},
+    {"microfacet_dielectric masking=product", 1.5, .3, 6, {.952793, .945109, .886349, .757291}},
+    {"microfacet_dielectric masking=product", 1.5, .5, 6, {.939932, .924544, .839760, .678763}},
+    {"microfacet_dielectric masking=product", .66666667, .1, 5, {.946422, .879780, .023035, .008095}},
+    {"microfacet_dielectric masking=product", .66666667, .3, 5, {.850745, .686275, .129681, .034208}},
+    {"microfacet_dielectric masking=product", .66666667, .5, 4, {.707683, .564182, .217617, .050659}},
+    {"microfacet_dielectric masking=beta", 1.5, .1, 6, {.959198, .956545, .906348, .687293}},
+    {"microfacet_dielectric masking=beta", 1.5, .3, 6, {.952793, .945088, .885544, .740313}},
+    {"microfacet_dielectric masking=beta", 1.5, .5, 6, {.939932, .924339, .832974, .599913}},
+    {"microfacet_dielectric masking=beta", .66666667, .1, 5, {.946422, .879779, .023025, .008014}},
+    {"microfacet_dielectric masking=beta", .66666667, .3, 5, {.850745, .686190, .128424, .028926}},
+    {"microfacet_dielectric masking=beta", .66666667, .5, 4, {.707683, .563789, .210526, .031333}},
 };
 
 struct below {
@@ -218,7 +285,7 @@ static void at_theta(void *context, double t, struct lab_estimate *y)
     struct below *b = context;
     double tolerance[SR_LAMBDA_COUNT], breaks[3] = {b->phi, b->phi + PI, b->phi + 2 * PI};
     for (int l = 0; l < SR_LAMBDA_COUNT; ++l)
-        tolerance[l] = 1e-9;
+        tolerance[l] = 1e-8;
     b->theta = t;
     sr_integrate(at_phi, b, breaks, 3, tolerance, 200, &b->budget, y);
 }
@@ -230,7 +297,7 @@ TEST(transmittances_of_rough_glass)
         for (int k = 0; k < 4; ++k) {
             const struct passing *row = &transmission[i];
             char words[200];
-            snprintf(words, sizeof words, "dielectric eta=%.8g alpha_x=%g alpha_y=%g", row->eta, row->alpha, row->alpha);
+            snprintf(words, sizeof words, "%s eta=%.8g alpha_x=%g alpha_y=%g", row->words, row->eta, row->alpha, row->alpha);
             struct sr_specimen s = specimen(words);
             struct sr_specimen_at at;
             sr_specimen_at(&s, SR_BLACK + 550, 1, &at);
@@ -242,7 +309,7 @@ TEST(transmittances_of_rough_glass)
             EXPECT_EQUAL_INT(sr_twin_make(&arena, &at.bsdf, at.lambda, SR_TWIN_DECIMAL, &b.twin, &error), SR_OK);
             double breaks[3] = {0, refracted, PI / 2}, tolerance[SR_LAMBDA_COUNT];
             for (int l = 0; l < SR_LAMBDA_COUNT; ++l)
-                tolerance[l] = 1e-8;
+                tolerance[l] = 2e-7;
             struct lab_estimate T;
             sr_integrate(at_theta, &b, breaks, 3, tolerance, 200, &b.budget, &T);
             if (fabs(T.value[0] - row->T[k]) > 1e-6 * row->T[k] + 1.1 * pow(10, -row->digits)) {
