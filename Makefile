@@ -49,6 +49,10 @@ bench: all
 check: all
 	ctest --test-dir $(BUILD) --output-on-failure -L fast
 
+# docs/figures and docs/theory, anew from the models' tables and sources
+figures: all
+	scripts/make-figures --command $(BUILD)/steradian
+
 format:
 	git ls-files '*.c' '*.h' | xargs clang-format -i
 
