@@ -197,30 +197,35 @@ static void add_marks(struct plot_builder *b, struct sr_plot_panel *panel, bool 
     panel->mark_count = count;
 }
 
-/* Near the horizon f of many models grows without bounds: an axis in proportion shows the rest. */
-static void settle_linear(struct sr_plot_axis *axis, const struct sr_plot_curve *curves, uint32_t count)
+/* Near the horizon f of many models grows without bounds: axes show the rest. */
+static double largest_off_horizon(const struct sr_plot_curve *curves, uint32_t count, double margin_deg)
 {
     double most = 0;
     for (uint32_t c = 0; c < count; ++c)
         for (uint32_t i = 0; i < curves[c].count; ++i)
-            if (isfinite(curves[c].y[i]) && fabs(curves[c].x[i]) < 82)
+            if (isfinite(curves[c].y[i]) && fabs(fabs(curves[c].x[i]) - 90) > margin_deg)
                 most = fmax(most, curves[c].y[i]);
-    axis->from = 0;
-    axis->to = most > 0 ? 1.08 * most : 1;
+    return most;
 }
 
-/* A logarithmic axis of what may be nought everywhere. */
+static void settle_linear(struct sr_plot_axis *axis, const struct sr_plot_curve *curves, uint32_t count,
+                          double margin_deg)
+{
+    double most = largest_off_horizon(curves, count, margin_deg);
+    axis->from = 0;
+    axis->to = most > 0 ? 1.06 * most : 1;
+}
+
+/* From what may be nought everywhere. */
 static void settle_logarithm(struct sr_plot_axis *axis, const struct sr_plot_curve *curves, uint32_t count)
 {
-    double most = 0;
+    double most = largest_off_horizon(curves, count, 4), least = most;
     for (uint32_t c = 0; c < count; ++c)
         for (uint32_t i = 0; i < curves[c].count; ++i)
-            most = isfinite(curves[c].y[i]) ? fmax(most, curves[c].y[i]) : most;
-    axis->is_log = true;
-    if (most > 0)
-        return;
-    axis->from = 1e-3;
-    axis->to = 1;
+            if (curves[c].y[i] > 0)
+                least = fmin(least, curves[c].y[i]);
+    axis->to = most > 0 ? pow(10, ceil(log10(most) - 1e-9)) : 1;
+    axis->from = fmax(1e-6 * axis->to, most > 0 ? fmin(0.1 * axis->to, pow(10, floor(log10(least) + 1e-9))) : 1e-3);
 }
 
 static void finish(struct plot_builder *b, struct sr_plot_panel *panel, const struct sr_plot_curve *curves,
@@ -229,7 +234,7 @@ static void finish(struct plot_builder *b, struct sr_plot_panel *panel, const st
     panel->curves = curves;
     panel->curve_count = b->request->specimen_count * columns;
     panel->has_no_legend = true; // the figure has one for all panels
-    if (panel->y.is_log)
+    if (panel->y.is_log && panel->y.from == panel->y.to)
         settle_logarithm(&panel->y, curves, panel->curve_count);
 }
 
@@ -258,6 +263,13 @@ sr_status plot_lobe(struct plot_builder *b, bool is_log)
         .x = {.label = "θ_{o}", .unit = "°", .from = is_whole ? -180 : -90, .to = is_whole ? 180 : 90},
         .y = {.label = plot_quantity(r), .unit = "sr^{-1}", .is_log = is_log}};
     add_marks(b, panel, true);
+    uint32_t n = r->specimen_count * plot_columns(r);
+    if (!is_log)
+        settle_linear(&panel->y, curves, n, 3);
+    else {
+        settle_logarithm(&panel->y, curves, n);
+        panel->y.from = fmin(panel->y.from, 1e-4 * panel->y.to); // a lobe is told from a circle
+    }
     finish(b, panel, curves, plot_columns(r));
     return SR_OK;
 }
@@ -286,7 +298,7 @@ sr_status plot_theta(struct plot_builder *b)
                                     .y = {.label = plot_quantity(r), .unit = "sr^{-1}", .is_log = r->is_log}};
     add_marks(b, panel, false);
     if (!r->is_log)
-        settle_linear(&panel->y, curves, r->specimen_count * plot_columns(r));
+        settle_linear(&panel->y, curves, r->specimen_count * plot_columns(r), 8);
     finish(b, panel, curves, plot_columns(r));
     return SR_OK;
 }
@@ -324,7 +336,7 @@ sr_status plot_half(struct plot_builder *b)
         .x = {.label = "θ_{h}", .unit = "°", .from = 0, .to = 90},
         .y = {.label = plot_quantity(r), .unit = "sr^{-1}", .is_log = r->is_log}};
     if (!r->is_log)
-        settle_linear(&panel->y, curves, r->specimen_count * plot_columns(r));
+        settle_linear(&panel->y, curves, r->specimen_count * plot_columns(r), 8);
     finish(b, panel, curves, plot_columns(r));
     return SR_OK;
 }
@@ -382,7 +394,8 @@ sr_status plot_albedo(struct plot_builder *b)
         all[n + i].dash = SR_PLOT_DASHED;
         all[n + i].label = NULL;
         for (uint32_t k = 0; k < COUNT; ++k)
-            most = fmax(most, fmax(reflected[i].y[k], is_both ? all[n + i].y[k] : 0));
+            if (x[k] < 82) // beyond, some grow without bounds
+                most = fmax(most, fmax(reflected[i].y[k], is_both ? all[n + i].y[k] : 0));
     }
     *panel = (struct sr_plot_panel){
         .kind = SR_PLOT_LINES,

@@ -14,12 +14,13 @@ static uint8_t byte_of(float linear)
 
 /* ---- lobes in space ---- */
 
-/* Radii of a lobe in shares of the largest: in proportion to f, or to its logarithm over five powers of ten. */
+/* Radii of a lobe in shares of the largest that is not next to the horizon, where some models grow without bounds: in
+ * proportion to f, or to its logarithm over five powers of ten. */
 static double radius_of(double value, double most, bool is_log)
 {
     if (!(value > 0) || !(most > 0))
         return 0;
-    return is_log ? fmax(0, 1 + log10(value / most) / 5) : value / most;
+    return fmin(1.15, is_log ? fmax(0, 1 + log10(value / most) / 5) : value / most);
 }
 
 static const struct sr_plot_body *ground(struct plot_builder *b, double radius, bool is_seen_through)
@@ -99,7 +100,7 @@ static uint32_t evaluate(struct plot_builder *b, uint32_t specimen, struct lobe 
     if (plot_values(b, specimen, lobe->wo, lobe->wi, lobe->count, lobe->values, lobe->xyz) != SR_OK)
         return 0;
     for (uint32_t i = 0; i < lobe->count; ++i)
-        if (isfinite(lobe->values[i]) && lobe->values[i] > lobe->most) {
+        if (isfinite(lobe->values[i]) && lobe->values[i] > lobe->most && fabsf(lobe->wo[i].z) > 0.03f) {
             lobe->most = lobe->values[i];
             top = i;
         }
