@@ -40,7 +40,7 @@ static const char help[] =
     "      --scale S          pixels of a PNG for each px [1] (1)\n"
     "      --view AZ,EL       from where bodies are seen: azimuth from the light's, elevation [deg] (78,24)\n"
     "      --zoom Z           of bodies [1] (1)\n"
-    "      --classic FOLDER   the field's classic figure: lobes in space of six models, each a PNG, and all in one\n"
+    "      --classic FOLDER   the field's classic figure: lobes in space of six models, classic.svg and .png\n"
     "  -q, --quiet            no notes\n"
     "\n"
     "Examples:\n"

@@ -10,28 +10,17 @@
 #include <sys/stat.h>
 
 static const struct {
-    const char *file, *title;
-    const char *words[8];
-    double theta_deg, azimuth_deg, elevation_deg, zoom; // the light, and where the eye is
+    const char *title, *words[8];
+    double at[4]; // [°] theta of the light; the eye's azimuth from the light's, and elevation; [1] zoom
 } lobes[] = {
-    {"lambert", "Lambert", {"diffuse", "reflectance=.5"}, 45, 78, 24, 1},
-    {"blinn_phong",
-     "Blinn–Phong + Lambert",
-     {"blinn_phong", "reflectance=.5", "specular=.12", "exponent=60"},
-     45,
-     78,
-     24,
-     1},
-    {"cook_torrance", "Cook–Torrance", {"cook_torrance", "reflectance=.15", "alpha=.25"}, 40, 78, 24, 1},
-    {"ward",
-     "Ward, anisotropic, from near",
+    {"Lambert", {"diffuse", "reflectance=.5"}, {45, 78, 24, 1}},
+    {"Blinn–Phong + Lambert", {"blinn_phong", "reflectance=.5", "specular=.12", "exponent=60"}, {45, 78, 24, 1}},
+    {"Cook–Torrance", {"cook_torrance", "reflectance=.15", "alpha=.25"}, {40, 78, 24, 1}},
+    {"Ward, anisotropic, from near",
      {"ward", "reflectance=.1", "specular=.3", "alpha_x=.12", "alpha_y=.4"},
-     40,
-     55,
-     30,
-     1.6},
-    {"lunar", "Hapke / Lommel–Seeliger: the Moon", {"lunar"}, 50, 78, 24, 1},
-    {"dust", "Lommel–Seeliger: dust", {"dust", "g=-.25", "thickness=1"}, 50, 78, 24, 1},
+     {40, 55, 30, 1.6}},
+    {"Hapke / Lommel–Seeliger: the Moon", {"lunar"}, {50, 78, 24, 1}},
+    {"Lommel–Seeliger: dust", {"dust", "g=-.25", "thickness=1"}, {50, 78, 24, 1}},
 };
 enum { LOBES = sizeof lobes / sizeof lobes[0], SIDE_X = 360, SIDE_Y = 310 };
 
@@ -41,11 +30,11 @@ static sr_status draw(uint32_t k, struct plot_request *r, struct plot_builder *b
     while (count < 8 && lobes[k].words[count])
         ++count;
     *r = (struct plot_request){.specimen_count = 1,
-                               .theta_deg = lobes[k].theta_deg,
+                               .theta_deg = lobes[k].at[0],
                                .phi_deg = 180,
                                .lambda = brdf_default_lambda(),
-                               .zoom = lobes[k].zoom,
-                               .view_deg = {lobes[k].azimuth_deg, lobes[k].elevation_deg}};
+                               .zoom = lobes[k].at[3],
+                               .view_deg = {lobes[k].at[1], lobes[k].at[2]}};
     static bool quiet = true;
     b->request = r;
     if (sr_specimen_read(b->arena, count, lobes[k].words, &r->specimens[0], command_log(&quiet), b->error) != SR_OK ||
@@ -56,10 +45,10 @@ static sr_status draw(uint32_t k, struct plot_request *r, struct plot_builder *b
     return SR_OK;
 }
 
-static sr_status write(const char *folder, const char *name, const char *ending, const struct sr_plot_figure *figure,
+static sr_status write(const char *folder, const char *ending, const struct sr_plot_figure *figure,
                        struct sr_arena *arena, struct sr_error *error)
 {
-    const char *path = sr_arena_printf(arena, "%s/classic%s%s.%s", folder, *name ? "-" : "", name, ending);
+    const char *path = sr_arena_printf(arena, "%s/classic.%s", folder, ending);
     return path ? sr_plot_write(figure, path, error)
                 : sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for a name");
 }
@@ -80,16 +69,12 @@ int plot_classic(const char *folder, bool is_quiet)
                                  .columns = 3,
                                  .panels = b.panels,
                                  .panel_count = b.panel_count};
-    if (!error.status && write(folder, "", "svg", &all, &arena, &error) == SR_OK)
-        write(folder, "", "png", &all, &arena, &error);
-    for (uint32_t k = 0; k < LOBES && !error.status; ++k) {
-        struct sr_plot_figure one = {.width = SIDE_X, .height = SIDE_Y, .panels = &b.panels[k], .panel_count = 1};
-        write(folder, lobes[k].file, "png", &one, &arena, &error);
-    }
+    if (!error.status && write(folder, "svg", &all, &arena, &error) == SR_OK)
+        write(folder, "png", &all, &arena, &error);
     sr_arena_free(&arena);
     if (error.status)
         return command_fail("brdf plot", &error);
     if (!is_quiet)
-        fprintf(stderr, "%s/classic.svg, classic.png: all six; classic-NAME.png: each by itself\n", folder);
+        fprintf(stderr, "%s/classic.svg and classic.png are drawn\n", folder);
     return 0;
 }
