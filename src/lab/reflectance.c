@@ -287,6 +287,7 @@ static void mirrored(struct task *t, const double w[3], const struct lab_region 
     for (int part = 0; part < parts; ++part) {
         struct twin_sample known[DELTAS], s;
         int count = 0;
+        double probability = 0;
         for (int k = 0; k < 64 + 12; ++k) { // lobes of small probability are at the ends
             double small = pow(10, -2 - 0.5 * ((k - 64) / 2));
             double u_lobe = k < 64 ? (k + 0.5) / 64 : k % 2 ? 1 - small : small;
@@ -297,7 +298,8 @@ static void mirrored(struct task *t, const double w[3], const struct lab_region 
                 is_known |= is_same(&known[i], &s);
             if (is_known)
                 continue;
-            if (count == DELTAS) {
+            probability += s.pdf;
+            if (count == DELTAS || probability > 1 + 1e-5) { // walks: their pdf is no probability
                 t->has_random_delta = true;
                 return;
             }

@@ -240,6 +240,32 @@ TEST(colour_under_an_illuminant)
     EXPECT(c.xyz[2] / 1.08883 < 0.6 * c.xyz[1]);
 }
 
+/* Two ways that share nothing but the model: its twin integrated, and its floats sampled. */
+TEST(every_model_by_both_ways)
+{
+    static const char *const to[] = {"hemisphere", "cone:40,200,25"};
+    int compared = 0;
+    for (int m = 0; sr_bsdf_models[m]; ++m)
+        for (int k = 0; k < 2; ++k) {
+            const char *name = sr_bsdf_models[m]->name;
+            static struct sr_arena arena;
+            struct sr_specimen s;
+            struct sr_error error = {0};
+            struct sr_beam i = beam("direction:50,20"), r = beam(to[k]);
+            struct sr_reflectance a, b;
+            if (sr_specimen_read(&arena, 1, &name, &s, (struct sr_log){0}, &error) != SR_OK)
+                continue; // it needs a file
+            if (sr_reflectance_cubature(&s, SR_BLACK + 550, &i, &r, 1e-5, &a, &error) != SR_OK)
+                continue; // random
+            EXPECT_EQUAL_INT(sr_reflectance_monte_carlo(&s, SR_BLACK + 550, &i, &r, 20000, 3, &b, &error), SR_OK);
+            if (!a.has_converged || fabs(a.value[0] - b.value[0]) > 4.5 * b.error[0] + 2e-5 * a.value[0])
+                test_fail(__FILE__, __LINE__, "%s into %s: %.8g +- %.1e by cubature, %.6g +- %.1e by drawing", name,
+                          to[k], a.value[0], a.error[0], b.value[0], b.error[0]);
+            ++compared;
+        }
+    EXPECT(compared >= 60);
+}
+
 TEST(beams_are_read_or_refused)
 {
     struct sr_beam b;
