@@ -15,6 +15,7 @@
 #else
 #define SR_PRINTF(text, first)
 #endif
+#define SR_INLINE static inline __attribute__((always_inline)) // what runs several times a bounce
 #define SR_LIKELY(x) __builtin_expect(!!(x), 1)
 #define SR_UNLIKELY(x) __builtin_expect(!!(x), 0)
 

@@ -131,9 +131,41 @@ static inline void sr_bsdf_clean_vectors(void)
     __builtin_ia32_vzeroupper();
 #endif
 }
+
+/* Lambert's law, f = rho / pi, in line since most surfaces have it: the model of diffuse.c is these three. */
+struct sr_bsdf_diffuse {
+    sr_spectrum reflectance; // [1] rho
+};
+static inline uint32_t sr_diffuse_lobes(const struct sr_bsdf_diffuse *m)
+{
+    return sr_spectrum_is_black(m->reflectance) ? 0 : SR_LOBE_REFLECTION | SR_LOBE_DIFFUSE;
+}
+static inline sr_spectrum sr_diffuse_f_pdf(const struct sr_bsdf_diffuse *m, sr_vec3 wo, sr_vec3 wi, float *pdf)
+{
+    bool is_reflected = sr_same_hemisphere(wo, wi);
+    *pdf = is_reflected ? fabsf(wi.z) * SR_INV_PI : 0;
+    return m->reflectance * (is_reflected ? SR_INV_PI : 0);
+}
+static inline bool sr_diffuse_sample(const struct sr_bsdf_diffuse *m, sr_vec3 wo, sr_vec2 u, struct sr_bsdf_sample *s)
+{
+    sr_vec3 wi = sr_warp_cosine_hemisphere(u);
+    wi.z = copysignf(wi.z, wo.z);
+    s->wi = wi;
+    s->f = m->reflectance * SR_INV_PI;
+    s->pdf = fabsf(wi.z) * SR_INV_PI;
+    s->eta = 1;
+    s->lobe = SR_LOBE_REFLECTION | SR_LOBE_DIFFUSE;
+    s->pdf_is_proportional = false;
+    return s->pdf > 0 && wo.z != 0 && sr_diffuse_lobes(m);
+}
+
+static inline bool sr_bsdf_is_diffuse(const struct sr_bsdf *b)
+{
+    return SR_LIKELY(b->model == &sr_bsdf_diffuse);
+}
 static inline uint32_t sr_bsdf_lobes(const struct sr_bsdf *b)
 {
-    return b->model->lobes(b->data);
+    return sr_bsdf_is_diffuse(b) ? sr_diffuse_lobes((const void *)b->data) : b->model->lobes(b->data);
 }
 static inline sr_spectrum sr_bsdf_f(const struct sr_bsdf *b, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode)
 {
@@ -144,9 +176,10 @@ static inline float sr_bsdf_pdf(const struct sr_bsdf *b, sr_vec3 wo, sr_vec3 wi,
 {
     return b->model->pdf(b->data, wo, wi, mode);
 }
-static inline sr_spectrum sr_bsdf_f_pdf(const struct sr_bsdf *b, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode,
-                                        float *pdf)
+static inline sr_spectrum sr_bsdf_f_pdf(const struct sr_bsdf *b, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *pdf)
 {
+    if (sr_bsdf_is_diffuse(b))
+        return sr_diffuse_f_pdf((const void *)b->data, wo, wi, pdf);
     sr_bsdf_clean_vectors();
     if (b->model->f_pdf)
         return b->model->f_pdf(b->data, wo, wi, mode, pdf);
@@ -156,7 +189,7 @@ static inline sr_spectrum sr_bsdf_f_pdf(const struct sr_bsdf *b, sr_vec3 wo, sr_
 static inline bool sr_bsdf_sample(const struct sr_bsdf *b, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode,
                                   struct sr_bsdf_sample *s)
 {
-    return b->model->sample(b->data, wo, u_lobe, u, mode, s);
+    return sr_bsdf_is_diffuse(b) ? sr_diffuse_sample((const void *)b->data, wo, u, s) : b->model->sample(b->data, wo, u_lobe, u, mode, s);
 }
 
 /* Fresnel reflectance, unpolarised. eta = index behind the surface / index on wo's side; cos_theta signed: negative means
@@ -187,9 +220,6 @@ float sr_ggx_roughness_to_alpha(float roughness); // pbrt's: sqrt(roughness)
 
 /* Plain data of the models that materials of their own fill in; all others keep theirs in their file, filled in by the table.
  * Each spectrum is at the path's wavelengths. */
-struct sr_bsdf_diffuse {
-    sr_spectrum reflectance; // [1]
-};
 struct sr_bsdf_diffuse_transmission {
     sr_spectrum reflectance, transmittance; // [1]
 };

@@ -14,38 +14,30 @@ static const struct sr_param params[] = {
 
 static uint32_t lobes(const void *self)
 {
-    const struct sr_bsdf_diffuse *m = self;
-    return sr_spectrum_is_black(m->reflectance) ? 0 : SR_LOBE_REFLECTION | SR_LOBE_DIFFUSE;
+    return sr_diffuse_lobes(self);
 }
 
 static sr_spectrum f(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode)
 {
-    const struct sr_bsdf_diffuse *m = self;
     (void)mode;
-    return sr_same_hemisphere(wo, wi) ? m->reflectance * SR_INV_PI : SR_BLACK;
+    float unused;
+    return sr_diffuse_f_pdf(self, wo, wi, &unused);
 }
 
 static float pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode)
 {
-    (void)self;
     (void)mode;
-    return sr_same_hemisphere(wo, wi) ? fabsf(wi.z) * SR_INV_PI : 0;
+    float density;
+    sr_diffuse_f_pdf(self, wo, wi, &density);
+    return density;
 }
 
 static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode,
                    struct sr_bsdf_sample *s)
 {
-    const struct sr_bsdf_diffuse *m = self;
     (void)u_lobe;
     (void)mode;
-    sr_vec3 wi = sr_warp_cosine_hemisphere(u);
-    wi.z = copysignf(wi.z, wo.z);
-    *s = (struct sr_bsdf_sample){.wi = wi,
-                                 .f = m->reflectance * SR_INV_PI,
-                                 .pdf = fabsf(wi.z) * SR_INV_PI,
-                                 .eta = 1,
-                                 .lobe = SR_LOBE_REFLECTION | SR_LOBE_DIFFUSE};
-    return s->pdf > 0 && wo.z != 0 && lobes(self);
+    return sr_diffuse_sample(self, wo, u, s);
 }
 
 static sr_spectrum albedo(const void *self, sr_vec3 wo)

@@ -20,14 +20,9 @@ static const struct sr_param params[] = {
     {.name = NULL},
 };
 
-// the weight of light met by the surface's choice, had a light been chosen instead
-static float weight_of_hit(const struct sr_scene *scene, const struct sr_point *from, float pdf, sr_vec3 wi, uint32_t light, const struct sr_point *there)
+// the weight of light met by the surface's choice (pdf), had a light been chosen instead and then that direction (density)
+static float weight_of_hit(const struct sr_lights *lights, const struct sr_point *from, float pdf, uint32_t light, float density)
 {
-    if (isinf(pdf))
-        return 1;
-    const struct sr_lights *lights = sr_scene_lights(scene);
-    struct sr_light l = lights->lights[light];
-    float density = l.model->pdf(l.self, from, wi, there);
     return density > 0 ? sr_mis_weight(pdf, sr_lights_pmf(lights, from, light) * density) : 1;
 }
 
@@ -39,8 +34,9 @@ static sr_spectrum escaping(const struct sr_scene *scene, const struct sr_point 
     for (uint32_t i = 0; i < lights->infinite_count; ++i) {
         uint32_t index = lights->infinite[i];
         struct sr_light light = lights->lights[index];
-        if (!light.model->is_delta)
-            L += light.model->Le(light.self, NULL, sr_neg(d), w) * weight_of_hit(scene, from, pdf, d, index, NULL);
+        float density;
+        sr_spectrum Le = light.model->Le_pdf(light.self, d, w, &density);
+        L += isinf(pdf) ? Le : Le * weight_of_hit(lights, from, pdf, index, density);
     }
     return L;
 }
@@ -71,6 +67,7 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
                           struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
 {
     const struct path *path = self;
+    const struct sr_lights *lights = sr_scene_lights(scene);
     struct sr_ray ray = start->ray;
     sr_spectrum L = SR_BLACK;   // radiance gathered so far                     [W m^-2 sr^-1 nm^-1]
     sr_spectrum beta = SR_ONE;  // product of f |cos theta_i| / pdf             [1]
@@ -89,7 +86,8 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
     }
 
     for (int bounce = 0;;) {
-        if (!(first && bounce == 0 ? sr_trace(scene, &ray, x, worker) : sr_trace_bare(scene, &ray, x, worker))) {
+        bool is_seen = bounce == 0 && (first || has_footprints);
+        if (!(is_seen ? sr_trace(scene, &ray, x, worker) : sr_trace_bare(scene, &ray, x, worker))) {
             if (first && bounce == 0)
                 *first = (struct sr_hit){.t = INFINITY};
             return L + beta * escaping(scene, &from->point, pdf, ray.d, w);
@@ -101,7 +99,7 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
         if (x->light != SR_NO_LIGHT) {
             sr_spectrum Le = sr_hit_Le(scene, x, sr_neg(ray.d), w);
             if (sr_spectrum_any(Le > 0.0f))
-                L += beta * Le * weight_of_hit(scene, &from->point, pdf, ray.d, x->light, &x->point);
+                L += beta * Le * (isinf(pdf) ? 1 : weight_of_hit(lights, &from->point, pdf, x->light, sr_light_density(lights->lights[x->light], &from->point, ray.d, &x->point)));
         }
         if (!x->material) { // an interface: the path goes on as it was
             if (++passed > 1000)
@@ -135,8 +133,11 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
         sr_sample8(sampler, group, &u_light, &u_bsdf);
         struct sr_bsdf bsdf;
         struct sr_frame frame;
-        uint32_t seed = sr_hash_combine(sampler->key + sampler->sample, group);
-        sr_material_shade(x->material, &x->point, sr_neg(ray.d), u_bsdf[3], seed, w, &bsdf, &frame);
+        uint32_t seed = sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu; // random walks hash it
+        if (SR_LIKELY(x->is_plain))
+            sr_material_shade_plain(x->material, &x->point, sr_neg(ray.d), u_bsdf[3], seed, w, &bsdf, &frame);
+        else
+            sr_material_shade(x->material, &x->point, sr_neg(ray.d), u_bsdf[3], seed, w, &bsdf, &frame);
         if (!bsdf.model) {
             if (++passed > 1000)
                 return L;
@@ -148,7 +149,7 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
             return L;
 
         // integral f L |cos theta_i| dwi, by the lights
-        if (sr_bsdf_lobes(&bsdf) & (SR_LOBE_DIFFUSE | SR_LOBE_GLOSSY))
+        if (sr_bsdf_is_diffuse(&bsdf) || sr_bsdf_lobes(&bsdf) & (SR_LOBE_DIFFUSE | SR_LOBE_GLOSSY))
             L += beta * direct(scene, &x->point, &frame, &bsdf, wo, u_light, w, worker);
 
         // integral f L |cos theta_i| dwi, by the surface: L(x, wi) is the next turn of this loop

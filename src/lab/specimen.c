@@ -364,7 +364,7 @@ static sr_status add(const struct reading *r, const struct sr_material *material
         return sr_fail(r->error, SR_ERROR_INPUT, "an interface does not scatter: nothing can be told of it");
     if (material->model->choose && depth < 8) {
         struct sr_point x = middle();
-        struct sr_wavelengths w = {SR_BLACK + 550, SR_ONE};
+        struct sr_wavelengths w = {.lambda = SR_BLACK + 550, .pdf = SR_ONE};
         float lo = 0, hi = 1;
         struct sr_material_context c = {.x = &x, .wo = {0, 0, 1}, .w = &w, .u = SR_ONE_MINUS_EPSILON};
         const struct sr_material *first = material->model->choose(material->self, &c);
@@ -475,7 +475,7 @@ void sr_specimen_at(const struct sr_specimen *specimen, sr_spectrum lambda, uint
     for (int j = 0; j < specimen->part_count; ++j) {
         struct sr_point x = middle();
         struct sr_frame unused;
-        struct sr_wavelengths w = {lambda, SR_ONE};
+        struct sr_wavelengths w = {.lambda = lambda, .pdf = SR_ONE};
         sr_material_shade(&specimen->parts[j].material, &x, (sr_vec3){0, 0, 1}, 0.5f,
                           sr_hash_combine(seed, (uint32_t)j), &w, &at->parts[j], &unused);
         sum.weight[j] = specimen->parts[j].weight;

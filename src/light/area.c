@@ -67,14 +67,14 @@ static sr_spectrum image_radiance(const struct sr_light_emission *e, sr_vec2 uv,
     if (rgb.r + rgb.g + rgb.b <= 0)
         return SR_BLACK;
     struct sr_spd s = sr_spd_from_rgb_illuminant(t->space, rgb);
-    return sr_spd_eval(&s, w->lambda) * e->derived_scale;
+    return sr_spd_along(&s, w) * e->derived_scale;
 }
 
 static sr_spectrum radiance(const struct sr_light_emission *e, sr_vec3 n, sr_vec2 uv, sr_vec3 w, const struct sr_wavelengths *wavelengths)
 {
     if (!e->two_sided && sr_dot(n, w) <= 0)
         return SR_BLACK;
-    return e->texels.width ? image_radiance(e, uv, wavelengths) : sr_spd_eval(&e->emitted, wavelengths->lambda);
+    return e->texels.width ? image_radiance(e, uv, wavelengths) : sr_spd_along(&e->emitted, wavelengths);
 }
 
 static sr_spectrum Le(const void *self, const struct sr_point *there, sr_vec3 w, const struct sr_wavelengths *wavelengths)
@@ -116,7 +116,7 @@ static inline bool sample_flat(const struct sr_light_area *m, sr_vec3 from, sr_v
     float r = sqrtf(r2);
     if (!(fabsf(height) > 1e-7f * r))
         return false;
-    s->L = sr_spd_eval(&m->emission->emitted, w->lambda);
+    s->L = sr_spd_along(&m->emission->emitted, w);
     s->wi = sr_scale(1 / r, d);
     s->distance = r;
     s->p = sr_mad(p, height < 0 ? m->off : -m->off, a->n);

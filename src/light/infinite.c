@@ -156,7 +156,7 @@ static sr_spectrum image_Le(const struct infinite *m, sr_vec2 p, const struct sr
     if (c.r + c.g + c.b <= 0)
         return SR_BLACK;
     struct sr_spd s = sr_spd_from_rgb_illuminant(t->space, c);
-    return sr_spd_eval(&s, w->lambda) * m->factor;
+    return sr_spd_along(&s, w) * m->factor;
 }
 
 static sr_spectrum Le(const void *self, const struct sr_point *there, sr_vec3 w, const struct sr_wavelengths *wavelengths)
@@ -164,7 +164,7 @@ static sr_spectrum Le(const void *self, const struct sr_point *there, sr_vec3 w,
     (void)there;
     const struct infinite *m = self;
     if (!is_image(m))
-        return sr_spd_eval(&m->L, wavelengths->lambda);
+        return sr_spd_along(&m->L, wavelengths);
     float jacobian;
     return image_Le(m, square(m, sr_neg(w), &jacobian), wavelengths);
 }
@@ -200,6 +200,18 @@ static float pdf(const void *self, const struct sr_point *reference, sr_vec3 wi,
     return sr_piecewise2_pdf(&m->density, p) * jacobian / (4 * SR_PI);
 }
 
+static sr_spectrum Le_pdf(const void *self, sr_vec3 wi, const struct sr_wavelengths *w, float *density)
+{
+    const struct infinite *m = self;
+    *density = 0;
+    if (!is_image(m))
+        return sr_spd_along(&m->L, w);
+    float jacobian;
+    sr_vec2 p = square(m, wi, &jacobian);
+    *density = sr_piecewise2_pdf(&m->density, p) * jacobian / (4 * SR_PI);
+    return image_Le(m, p, w);
+}
+
 static float power(const void *self)
 {
     const struct infinite *m = self;
@@ -216,5 +228,5 @@ static bool bounds(const void *self, struct sr_light_bounds *b)
 
 const struct sr_light_model sr_light_infinite = {
     .name = "infinite", .params = params, .size = sizeof(struct infinite), .is_infinite = true, .prepare = prepare,
-    .place = place, .sample = sample, .pdf = pdf, .Le = Le, .bounds = bounds, .power = power,
+    .place = place, .sample = sample, .pdf = pdf, .Le = Le, .Le_pdf = Le_pdf, .bounds = bounds, .power = power,
 };

@@ -54,6 +54,8 @@ struct sr_light_model {
     float (*pdf)(const void *self, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there);
     /* Radiance leaving `there` toward w (area lights), or arriving along a ray that escapes in direction -w (infinite, there NULL). */
     sr_spectrum (*Le)(const void *self, const struct sr_point *there, sr_vec3 w, const struct sr_wavelengths *wavelengths);
+    /* Infinite lights: Le along a ray that escapes toward wi, and pdf, at once; NULL: it has no Le. */
+    sr_spectrum (*Le_pdf)(const void *self, sr_vec3 wi, const struct sr_wavelengths *wavelengths, float *pdf);
     bool (*bounds)(const void *self, struct sr_light_bounds *bounds); // false: infinite, power alone is set
     float (*power)(const void *self); // luminous integral of the emitted flux [cd sr]; infinite: of what enters the scene's
                                       // sphere, and 0 for a uniform sky, which is never chosen
@@ -112,6 +114,12 @@ static inline bool sr_light_draw(struct sr_light light, const struct sr_point *r
     return light.model->sample(light.self, reference, u, w, s);
 }
 
+/* The density of a light's own draw toward wi, where a surface's draw has met it. */
+static inline float sr_light_density(struct sr_light light, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there)
+{
+    return light.model->pdf(light.self, reference, wi, there);
+}
+
 /* ---- choosing among many ---- */
 
 enum sr_light_choice { SR_LIGHTS_BVH, SR_LIGHTS_POWER, SR_LIGHTS_UNIFORM };
@@ -122,6 +130,7 @@ struct sr_lights {
     const uint32_t *infinite; // indices of the infinite lights that a ray can escape to: not the distant ones
     uint32_t infinite_count;
     enum sr_light_choice choice;
+    const struct sr_table *white; // of the first light: worth knowing along a path; or NULL
     uint32_t only;            // 1 + the index of the one light that can be chosen, or 0 if there are several or none
     const void *tree;         // private: nodes, each light's way to its leaf, alias table
 };

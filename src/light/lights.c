@@ -30,6 +30,14 @@ static float power_of(struct sr_light light)
     return b.power > 0 && isfinite(b.power) ? b.power : 0;
 }
 
+static const struct sr_table *white_of(struct sr_light light)
+{
+    if (light.model != &sr_light_area)
+        return sr_colour_space(((const struct sr_light_common *)light.self)->space)->illuminant;
+    const struct sr_light_emission *e = ((const struct sr_light_area *)light.self)->emission;
+    return e->texels.width ? sr_colour_space(e->texels.space)->illuminant : e->emitted.kind == SR_SPD_ILLUMINANT ? e->emitted.table : NULL;
+}
+
 static sr_status build_choice(struct sr_arena *arena, struct sr_lights *l, struct sr_error *error)
 {
     uint32_t n = l->count, infinite_count = 0;
@@ -75,7 +83,7 @@ static sr_status build_choice(struct sr_arena *arena, struct sr_lights *l, struc
 sr_status sr_lights_build(struct sr_arena *arena, const struct sr_light *lights, uint32_t count, enum sr_light_choice choice,
                           struct sr_lights *out, struct sr_error *error)
 {
-    *out = (struct sr_lights){.lights = lights, .count = count, .choice = choice};
+    *out = (struct sr_lights){.lights = lights, .count = count, .choice = choice, .white = count ? white_of(lights[0]) : NULL};
     return count ? build_choice(arena, out, error) : SR_OK;
 }
 

@@ -8,18 +8,6 @@
  * P. Clarberg, Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD, 2008. Directions must have unit length. */
 #include "math/math.h"
 
-struct sr_frame sr_frame_from_z(sr_vec3 z)
-{
-    float sign = copysignf(1, z.z);
-    float a = -1 / (sign + z.z);
-    float b = z.x * z.y * a;
-    return (struct sr_frame){
-        .x = {1 + sign * z.x * z.x * a, sign * b, -sign * z.x},
-        .y = {b, sign + z.y * z.y * a, -z.y},
-        .z = z,
-    };
-}
-
 struct sr_frame sr_frame_from_zx(sr_vec3 z, sr_vec3 x)
 {
     sr_vec3 across = sr_mad(x, -sr_dot(x, z), z);
@@ -38,10 +26,11 @@ sr_vec3 sr_equal_area_square_to_sphere(sr_vec2 p)
     bool upper = a + b <= 1;
     // sums of what is small at the pole: r loses no digits there
     float r = upper ? a + b : (1 - a) + (1 - b);
-    float phi = (r > 0 ? (b - a) / r + 1 : 1) * (SR_PI / 4);
+    float s, c; // of phi
+    sr_sin_cos_turn((r > 0 ? (b - a) / r + 1 : 1) * 0.125f, &s, &c);
     float sin_theta = r * sr_safe_sqrt(2 - r * r);
     float z = 1 - r * r;
-    return (sr_vec3){copysignf(cosf(phi), u) * sin_theta, copysignf(sinf(phi), v) * sin_theta, upper ? z : -z};
+    return (sr_vec3){copysignf(c, u) * sin_theta, copysignf(s, v) * sin_theta, upper ? z : -z};
 }
 
 sr_vec2 sr_equal_area_sphere_to_square(sr_vec3 d)
@@ -49,7 +38,7 @@ sr_vec2 sr_equal_area_sphere_to_square(sr_vec3 d)
     float x = fabsf(d.x), y = fabsf(d.y), z = fabsf(d.z);
     float r = sqrtf((x * x + y * y) / (1 + z)); // sqrt(1 - z) without its cancellation at the pole
     float larger = sr_max(x, y);
-    float turn = larger > 0 ? atanf(sr_min(x, y) / larger) * (2 * SR_INV_PI) : 0; // [quarter turns]
+    float turn = larger > 0 ? sr_atan_eighth(sr_min(x, y) / larger) * (2 * SR_INV_PI) : 0; // [quarter turns]
     float v = r * (x < y ? 1 - turn : turn);
     float u = r - v;
     if (d.z < 0) {

@@ -61,6 +61,7 @@ static bool sample_pixel(const struct sr_render_job *job, float m[3][3], uint32_
     float weight = 1;
     sr_vec2 offset = job->jitter_pixel ? sr_filter_sample(&job->filter, (sr_vec2){u[0], u[1]}, &weight) : (sr_vec2){0, 0};
     struct sr_wavelengths w = sr_wavelengths_sample(job->lambda, job->jitter_lambda ? u[2] : 0.5f);
+    sr_wavelengths_know(&w, sr_scene_lights(job->scene)->white);
     struct sr_sensor_ray view;
     rgb[0] = rgb[1] = rgb[2] = 0;
     sr_vec2 raster = {(float)x + 0.5f + offset.x, (float)y + 0.5f + offset.y};

@@ -101,41 +101,60 @@ static void integrate(const float *f, struct sr_piecewise1 *d)
     d->integral = sum * ((double)d->hi - (double)d->lo) / d->count;
 }
 
+// the last cell that begins at or below u, between two cells that do and need not
+static uint32_t search(const float *cdf, uint32_t first, uint32_t last, float u)
+{
+    for (uint32_t size = last - first + 1; size > 1;) {
+        uint32_t half = size / 2;
+        first = cdf[first + half] <= u ? first + half : first;
+        size -= half;
+    }
+    return first;
+}
+
+// guide[i] is the cell at u = (i - 1/2) / count, so that no rounding of count u leads astray (H. Chen & Y. Asau, 1974)
+static void make_guide(struct sr_piecewise1 *d)
+{
+    for (uint32_t i = 0; i < d->count + 2; ++i)
+        d->guide[i] = (uint16_t)search(d->cdf, i ? d->guide[i - 1] : 0, d->count - 1, (float)(((double)i - 0.5) / d->count));
+}
+
+enum { MOST_GUIDED = 65536 };
+
 bool sr_piecewise1_build(struct sr_arena *arena, const float *f, uint32_t count, float lo, float hi, struct sr_piecewise1 *d)
 {
-    *d = (struct sr_piecewise1){.count = count, .lo = lo, .hi = hi};
+    *d = (struct sr_piecewise1){.count = count, .lo = lo, .hi = hi, .per_unit = (float)count / (hi - lo)};
     d->f = count ? sr_arena_alloc(arena, count * sizeof(float)) : NULL;
     d->cdf = count ? sr_arena_alloc(arena, ((size_t)count + 1) * sizeof(float)) : NULL;
-    if (!d->f || !d->cdf)
+    d->guide = count <= MOST_GUIDED ? sr_arena_alloc(arena, ((size_t)count + 2) * sizeof *d->guide) : NULL;
+    if (!d->f || !d->cdf || (!d->guide && count <= MOST_GUIDED))
         return false;
     integrate(f, d);
+    if (d->guide)
+        make_guide(d);
     return true;
 }
 
-static uint32_t cell_of(const struct sr_piecewise1 *d, float x)
+static inline uint32_t cell_of(const struct sr_piecewise1 *d, float x)
 {
-    float i = (x - d->lo) / (d->hi - d->lo) * (float)d->count;
+    float i = (x - d->lo) * d->per_unit;
     return i > 0 ? (uint32_t)sr_min(i, (float)(d->count - 1)) : 0;
 }
 
-static float density(const struct sr_piecewise1 *d, uint32_t cell)
+static inline float density(const struct sr_piecewise1 *d, uint32_t cell)
 {
-    return (d->cdf[cell + 1] - d->cdf[cell]) * (float)d->count / (d->hi - d->lo);
+    return (d->cdf[cell + 1] - d->cdf[cell]) * d->per_unit;
 }
 
 float sr_piecewise1_sample(const struct sr_piecewise1 *d, float u, float *pdf, uint32_t *cell)
 {
     // the last cell that begins at or below u: it ends above u, so it is not empty
-    uint32_t first = 0, size = d->count;
-    while (size > 1) {
-        uint32_t half = size / 2;
-        first = d->cdf[first + half] <= u ? first + half : first;
-        size -= half;
-    }
+    uint32_t i = (uint32_t)(u * (float)d->count);
+    uint32_t first = d->guide && i < d->count ? search(d->cdf, d->guide[i], d->guide[i + 2], u) : search(d->cdf, 0, d->count - 1, u);
     float within = (u - d->cdf[first]) / (d->cdf[first + 1] - d->cdf[first]);
-    float x = d->lo + (d->hi - d->lo) * (((float)first + within) / (float)d->count);
+    float x = d->lo + ((float)first + within) / d->per_unit;
     // rounding at an edge must not carry x to a neighbour whose density differs
-    for (int i = 0; i < 64 && cell_of(d, x) != first; ++i)
+    for (int k = 0; k < 64 && cell_of(d, x) != first; ++k)
         x = nextafterf(x, cell_of(d, x) > first ? d->lo : d->hi);
     if (pdf)
         *pdf = density(d, first);
@@ -158,11 +177,15 @@ bool sr_piecewise2_build(struct sr_arena *arena, const float *f, uint32_t nx, ui
     d->conditional = sr_arena_alloc(arena, rows * sizeof *d->conditional);
     float *values = sr_arena_alloc(arena, rows * columns * sizeof(float));
     float *cdf = sr_arena_alloc(arena, rows * (columns + 1) * sizeof(float));
+    uint16_t *guides = nx <= MOST_GUIDED ? sr_arena_alloc(arena, rows * (columns + 2) * sizeof *guides) : NULL;
     float *means = sr_alloc(rows * sizeof(float));
-    bool ok = d->conditional && values && cdf && means;
+    bool ok = d->conditional && values && cdf && means && (guides || nx > MOST_GUIDED);
     for (size_t y = 0; ok && y < rows; ++y) {
-        d->conditional[y] = (struct sr_piecewise1){.count = nx, .lo = 0, .hi = 1, .f = values + y * columns, .cdf = cdf + y * (columns + 1)};
+        d->conditional[y] = (struct sr_piecewise1){.count = nx, .lo = 0, .hi = 1, .per_unit = (float)nx, .f = values + y * columns,
+                                                      .cdf = cdf + y * (columns + 1), .guide = guides ? guides + y * (columns + 2) : NULL};
         integrate(f + y * columns, &d->conditional[y]);
+        if (guides)
+            make_guide(&d->conditional[y]);
         means[y] = (float)d->conditional[y].integral;
     }
     ok = ok && sr_piecewise1_build(arena, means, ny, 0, 1, &d->marginal);

@@ -174,26 +174,7 @@ static inline void sr_sample8(const struct sr_sampler *s, uint32_t group, sr_u4 
 
 /* ---- warps: uniform numbers to shapes, with densities ---- */
 
-/* Sine and cosine of x in -pi/4 … pi/4 [rad], by Taylor's series: off by less than 1e-7, the sine relative to itself. */
-static inline void sr_sin_cos_eighth(float x, float *s, float *c)
-{
-    float x2 = x * x;
-    *s = x + x * x2 * (-1.0f / 6 + x2 * (1.0f / 120 + x2 * (-1.0f / 5040 + x2 * (1.0f / 362880))));
-    *c = 1 + x2 * (-0.5f + x2 * (1.0f / 24 + x2 * (-1.0f / 720 + x2 * (1.0f / 40320))));
-}
-/* The same of a share of the whole turn in 0 … 1; less than half the price of sinf and cosf. */
-static inline void sr_sin_cos_turn(float turn, float *s, float *c)
-{
-    int quarter = (int)(4 * turn + 0.5f);
-    float x, y;
-    sr_sin_cos_eighth((turn - 0.25f * (float)quarter) * (2 * SR_PI), &y, &x);
-    bool odd = quarter & 1;
-    float a = odd ? y : x, b = odd ? x : y;
-    *c = (quarter + 1) & 2 ? -a : a;
-    *s = quarter & 2 ? -b : b;
-}
-
-static inline sr_vec2 sr_warp_disk(sr_vec2 u)   // concentric (Shirley & Chiu 1997), pdf 1/pi
+SR_INLINE sr_vec2 sr_warp_disk(sr_vec2 u)   // concentric (Shirley & Chiu 1997), pdf 1/pi
 {
     float a = 2 * u.x - 1, b = 2 * u.y - 1, s, c;
     bool wide = fabsf(a) > fabsf(b);
@@ -204,7 +185,7 @@ static inline sr_vec2 sr_warp_disk(sr_vec2 u)   // concentric (Shirley & Chiu 19
 }
 sr_vec3 sr_warp_uniform_sphere(sr_vec2 u);      // pdf 1/(4 pi) sr^-1
 sr_vec3 sr_warp_uniform_hemisphere(sr_vec2 u);  // pdf 1/(2 pi) sr^-1
-static inline sr_vec3 sr_warp_cosine_hemisphere(sr_vec2 u) // over the disk (Malley), pdf cos/pi sr^-1
+SR_INLINE sr_vec3 sr_warp_cosine_hemisphere(sr_vec2 u) // over the disk (Malley), pdf cos/pi sr^-1
 {
     sr_vec2 d = sr_warp_disk(u);
     return (sr_vec3){d.x, d.y, sr_safe_sqrt(1 - d.x * d.x - d.y * d.y)};
@@ -254,6 +235,8 @@ struct sr_piecewise1 {
     double integral;
     float *f;   // count values
     float *cdf; // count + 1 values
+    float per_unit;  // cells [1/length of the interval's unit]
+    uint16_t *guide; // count + 2 cells: where to look for u between guide[i] and guide[i + 2], i = floor(count u); or NULL
 };
 bool sr_piecewise1_build(struct sr_arena *arena, const float *f, uint32_t count, float lo, float hi, struct sr_piecewise1 *d);
 float sr_piecewise1_sample(const struct sr_piecewise1 *d, float u, float *pdf, uint32_t *cell);

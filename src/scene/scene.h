@@ -46,6 +46,7 @@ struct sr_hit {
     uint32_t object;                    // number of the shape, from 1
     uint32_t material_number;           // from 1; 0: interface
     bool has_footprint;                 // its material looks at the point's footprint
+    bool is_plain;                      // its material looks at p, n and ns alone
 };
 #define SR_NO_LIGHT UINT32_MAX
 

@@ -32,6 +32,21 @@ static int find_knot(const float *knots, float z)
     return k < SR_RGB_RESOLUTION - 2 ? k : SR_RGB_RESOLUTION - 2;
 }
 
+typedef float quad __attribute__((vector_size(16)));
+
+// three coefficients and one more float: the table has padding
+static inline quad load(const float *p)
+{
+    quad a;
+    __builtin_memcpy(&a, p, sizeof a);
+    return a;
+}
+
+static inline quad mix(float t, quad a, quad b)
+{
+    return (1 - t) * a + t * b;
+}
+
 struct sr_sigmoid sr_rgb_to_sigmoid(enum sr_colour_space_id space, struct sr_rgb rgb)
 {
     float v[3] = {sr_clamp(rgb.r, 0, 1), sr_clamp(rgb.g, 0, 1), sr_clamp(rgb.b, 0, 1)};
@@ -43,17 +58,14 @@ struct sr_sigmoid sr_rgb_to_sigmoid(enum sr_colour_space_id space, struct sr_rgb
     const int n = SR_RGB_RESOLUTION;
     float z = v[largest];
     float x = v[(largest + 1) % 3] / z * (float)(n - 1), y = v[(largest + 2) % 3] / z * (float)(n - 1);
-    int i = x < n - 2 ? (int)x : n - 2, j = y < n - 2 ? (int)y : n - 2, k = find_knot(table->knots, z);
+    int i = x < n - 2 ? (int)x : n - 2, j = y < n - 2 ? (int)y : n - 2;
+    int k = z == 0.5f ? n / 2 - 1 : find_knot(table->knots, z); // what shines is scaled to that
     float tx = x - (float)i, ty = y - (float)j, tz = (z - table->knots[k]) / (table->knots[k + 1] - table->knots[k]);
 
-    const float *corner = table->coefficients[largest][k][j][i];
-    float c[3];
-    for (int e = 0; e < 3; ++e) {
-        const float *p = corner + e, *q = p + 3 * n, *r = p + 3 * n * n, *s = r + 3 * n;
-        float near = sr_lerp(ty, sr_lerp(tx, p[0], p[3]), sr_lerp(tx, q[0], q[3]));
-        float far = sr_lerp(ty, sr_lerp(tx, r[0], r[3]), sr_lerp(tx, s[0], s[3]));
-        c[e] = sr_lerp(tz, near, far);
-    }
+    const float *p = table->coefficients[largest][k][j][i], *q = p + 3 * n, *r = p + 3 * n * n, *s = r + 3 * n;
+    quad near = mix(ty, mix(tx, load(p), load(p + 3)), mix(tx, load(q), load(q + 3)));
+    quad far = mix(ty, mix(tx, load(r), load(r + 3)), mix(tx, load(s), load(s + 3)));
+    quad c = mix(tz, near, far);
     return (struct sr_sigmoid){c[0], c[1], c[2]};
 }
 

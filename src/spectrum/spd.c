@@ -72,6 +72,20 @@ sr_spectrum sr_spd_eval(const struct sr_spd *s, sr_spectrum lambda)
     return SR_BLACK;
 }
 
+void sr_wavelengths_know(struct sr_wavelengths *w, const struct sr_table *table)
+{
+    w->known = table;
+    if (table)
+        w->known_values = table_eval(table, w->lambda);
+}
+
+sr_spectrum sr_spd_along(const struct sr_spd *s, const struct sr_wavelengths *w)
+{
+    if (s->kind == SR_SPD_ILLUMINANT && SR_LIKELY(s->table == w->known))
+        return s->scale * sr_sigmoid_eval(s->sigmoid, w->lambda) * w->known_values;
+    return sr_spd_eval(s, w->lambda);
+}
+
 float sr_spd_at(const struct sr_spd *s, float lambda)
 {
     return sr_spd_eval(s, SR_BLACK + lambda)[0];

@@ -53,12 +53,16 @@ static inline float sr_spectrum_mean(sr_spectrum s)
 /* Whether the mask (of a comparison) is true for any component. */
 static inline bool sr_spectrum_any(sr_spectrum_int mask)
 {
+#if defined(__AVX__) && SR_LAMBDA_COUNT == 8 && !defined(float)
+    return __builtin_ia32_movmskps256((sr_spectrum)mask) != 0;
+#else
     typedef uint64_t words __attribute__((vector_size(sizeof(sr_spectrum_int))));
     words w = (words)mask;
     uint64_t any = 0;
     for (size_t i = 0; i < sizeof w / sizeof any; ++i)
         any |= w[i];
     return any != 0;
+#endif
 }
 static inline bool sr_spectrum_is_black(sr_spectrum s)
 {
@@ -94,6 +98,8 @@ struct sr_lambda_range {
 struct sr_wavelengths {
     sr_spectrum lambda; // [nm]
     sr_spectrum pdf;    // [1/nm]; secondary wavelengths that dispersion has ended have pdf 0
+    const struct sr_table *known; // a table that has been looked up already, or NULL
+    sr_spectrum known_values;     // its values at lambda
 };
 
 /* Stratified wavelengths: u moves all of them together by a lattice rotation; density proportional to
@@ -140,6 +146,10 @@ struct sr_spd {
 };
 
 sr_spectrum sr_spd_eval(const struct sr_spd *s, sr_spectrum lambda);
+/* The same at the wavelengths of a path, which may know the table. */
+sr_spectrum sr_spd_along(const struct sr_spd *s, const struct sr_wavelengths *w);
+/* Looks the table up for all of a path: the white that most of its lights share. NULL: nothing. */
+void sr_wavelengths_know(struct sr_wavelengths *w, const struct sr_table *table);
 float sr_spd_at(const struct sr_spd *s, float lambda); // one wavelength [nm]
 float sr_spd_max(const struct sr_spd *s);              // over the observer's range; ILLUMINANT: of samples by 1 nm
 static inline bool sr_spd_is_constant(const struct sr_spd *s)

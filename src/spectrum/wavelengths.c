@@ -53,6 +53,7 @@ struct sr_wavelengths sr_wavelengths_sample(struct sr_lambda_range range, float 
     sr_spectrum grown = 1.0f + share * above_lo / (above_lo + e_lo * (d - share)); // 1 + delta
 
     struct sr_wavelengths w;
+    w.known = NULL;
     sr_spectrum lambda = range.lo + logarithm(grown) * (1 / SLOPE);
     w.lambda = sr_spectrum_select(lambda > range.hi, SR_BLACK + range.hi, lambda);
     sr_spectrum inverse = 1.0f / (1.0f + e_lo * grown);
