@@ -276,6 +276,16 @@ SR_INLINE float sr_atan_eighth(float x)
                 t4 * t4 * 0.0027662835f);
 }
 
+/* The angle of (x, y) from the x axis in 0 … 2 pi [rad], off by less than 1e-6; 0 for (0, 0). */
+SR_INLINE float sr_angle_of(float y, float x)
+{
+    float a = fabsf(x), b = fabsf(y), larger = a > b ? a : b, lesser = a > b ? b : a;
+    float angle = sr_atan_eighth(larger > 0 ? lesser / larger : 0);
+    angle = b > a ? SR_PI / 2 - angle : angle;
+    angle = x < 0 ? SR_PI - angle : angle;
+    return y < 0 ? 2 * SR_PI - angle : angle;
+}
+
 /* ---- spherical coordinates ---- */
 
 static inline sr_vec3 sr_spherical_direction(float sin_theta, float cos_theta, float phi)

@@ -8,10 +8,16 @@
 
 enum { DEFAULT_TILE = 16, ORDINARY_BLOCKS = 4 };
 
+/* What all samples of a job share. */
+struct response {
+    float rgb_from_xyz[3][3];
+    struct sr_lambda_law law;
+};
+
 struct run {
     const struct sr_render_job *job;
     struct sr_film *film;
-    float rgb_from_xyz[3][3];
+    struct response response;
     uint32_t tile, tiles_x, tiles_y, blocks;
     atomic_ullong next_unit;
     atomic_uint *tile_blocks;      // how many blocks of a tile are in the film
@@ -53,14 +59,21 @@ static void first_albedo(const struct sr_render_job *job, struct sr_hit *hit, sr
     albedo[0] = rgb.r, albedo[1] = rgb.g, albedo[2] = rgb.b;
 }
 
-static bool sample_pixel(const struct sr_render_job *job, float m[3][3], uint32_t x, uint32_t y, const struct sr_sampler *sampler,
+static struct response response_of(const struct sr_render_job *job)
+{
+    struct response r = {.law = sr_lambda_law(job->lambda)};
+    sr_film_response(&job->film, r.rgb_from_xyz);
+    return r;
+}
+
+static bool sample_pixel(const struct sr_render_job *job, const struct response *response, uint32_t x, uint32_t y, const struct sr_sampler *sampler,
                          float rgb[3], struct sr_first_hit *first, struct sr_worker *worker)
 {
     sr_u4 u, u_lens;
     sr_sample8(sampler, SR_USE_FILM, &u, &u_lens);
     float weight = 1;
     sr_vec2 offset = job->jitter_pixel ? sr_filter_sample(&job->filter, (sr_vec2){u[0], u[1]}, &weight) : (sr_vec2){0, 0};
-    struct sr_wavelengths w = sr_wavelengths_sample(job->lambda, job->jitter_lambda ? u[2] : 0.5f);
+    struct sr_wavelengths w = sr_wavelengths_draw(&response->law, job->jitter_lambda ? u[2] : 0.5f);
     sr_wavelengths_know(&w, sr_scene_lights(job->scene)->white);
     struct sr_sensor_ray view;
     rgb[0] = rgb[1] = rgb[2] = 0;
@@ -77,6 +90,7 @@ static bool sample_pixel(const struct sr_render_job *job, float m[3][3], uint32_
     sr_spectrum L = job->integrator.model->L(job->integrator.self, job->scene, &start, sampler, &w, first ? &hit : NULL, worker);
     struct sr_xyz xyz = sr_spectrum_to_xyz(L, &w);
     weight *= view.weight;
+    const float(*m)[3] = response->rgb_from_xyz;
     for (int c = 0; c < 3; ++c)
         rgb[c] = weight * (m[c][0] * xyz.x + m[c][1] * xyz.y + m[c][2] * xyz.z);
     float largest = sr_max(rgb[0], sr_max(rgb[1], rgb[2]));
@@ -103,10 +117,9 @@ static bool sample_pixel(const struct sr_render_job *job, float m[3][3], uint32_
 bool sr_render_sample(const struct sr_render_job *job, uint32_t x, uint32_t y, uint32_t replicate, uint32_t sample, float rgb[3],
                       struct sr_first_hit *first, struct sr_worker *worker)
 {
-    float m[3][3];
-    sr_film_response(&job->film, m);
+    struct response response = response_of(job);
     struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, x, y, replicate, sample);
-    return sample_pixel(job, m, x, y, &sampler, rgb, first, worker);
+    return sample_pixel(job, &response, x, y, &sampler, rgb, first, worker);
 }
 
 /* ---- one unit: a tile times a block ---- */
@@ -147,7 +160,7 @@ static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, 
         sampler.sample = i;
         float rgb[3];
         struct sr_first_hit first;
-        bool is_finite = sample_pixel(job, run->rgb_from_xyz, x, y, &sampler, rgb, job->with_aov ? &first : NULL, worker);
+        bool is_finite = sample_pixel(job, &run->response, x, y, &sampler, rgb, job->with_aov ? &first : NULL, worker);
         if (SR_UNLIKELY(!is_finite))
             remember_dropped(run, x, y, replicate, i);
         sr_film_block_add(b, rgb, is_finite);
@@ -241,7 +254,7 @@ sr_status sr_render(const struct sr_render_job *job, struct sr_film **film, stru
         return error->status;
 
     struct run run = {.job = job, .film = *film, .tile = job->tile > 0 ? (uint32_t)job->tile : DEFAULT_TILE};
-    sr_film_response(&job->film, run.rgb_from_xyz);
+    run.response = response_of(job);
     run.tiles_x = ((*film)->width + run.tile - 1) / run.tile;
     run.tiles_y = ((*film)->height + run.tile - 1) / run.tile;
     run.blocks = job->replicates ? job->replicates : job->spp < ORDINARY_BLOCKS ? job->spp : ORDINARY_BLOCKS;

@@ -67,8 +67,7 @@ static inline double sr_quadric_phi(double x, double y)
 }
 static inline float sr_quadric_phif(double x, double y)
 {
-    float phi = atan2f((float)y, (float)x);
-    return phi < 0 ? phi + 2 * SR_PI : phi;
+    return sr_angle_of((float)y, (float)x);
 }
 
 /* Roots t0 <= t1 of a t^2 + 2 b t + c = 0, given b^2 - a c without cancellation. */

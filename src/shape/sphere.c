@@ -137,7 +137,7 @@ static sr_dvec3 direction(sr_vec2 h)
 
 static sr_vec2 coordinates(const struct sr_shape_sphere *s, sr_dvec3 n)
 {
-    float theta = atan2f((float)sqrt(n.x * n.x + n.y * n.y), (float)n.z);
+    float theta = sr_angle_of((float)sqrt(n.x * n.x + n.y * n.y), (float)n.z);
     return (sr_vec2){sr_clamp(sr_quadric_phif(n.x, n.y) / s->phi_max_rad, 0, 1),
                      sr_clamp((theta - s->theta_z_min) / (s->theta_z_max - s->theta_z_min), 0, 1)};
 }
@@ -252,8 +252,9 @@ static bool sample(const void *self, uint32_t primitive, const struct sr_point *
            cos_beta = sqrt((1 - sin_beta) * (1 + sin_beta));
     double sin_alpha = sin_beta * cos_theta - cos_beta * sin_theta,
            cos_alpha = cos_beta * cos_theta + sin_beta * sin_theta;
-    float phi = 2 * SR_PI * u.y;
-    double a = sin_alpha * (double)cosf(phi), b = sin_alpha * (double)sinf(phi);
+    float sin_phi, cos_phi;
+    sr_sin_cos_turn(u.y, &sin_phi, &cos_phi);
+    double a = sin_alpha * (double)cos_phi, b = sin_alpha * (double)sin_phi;
     sr_dvec3 axis = unit(c);
     struct sr_frame f = sr_frame_from_z(sr_dround(axis));
     sr_dvec3 fx = sr_dvec(f.x), fy = sr_dvec(f.y);

@@ -106,6 +106,13 @@ struct sr_wavelengths {
  * sech^2(0.0072 (lambda - 538)) on the range (Radziszewski et al. 2009), which follows the observer. u in [0, 1),
  * range.lo < range.hi. */
 struct sr_wavelengths sr_wavelengths_sample(struct sr_lambda_range range, float u);
+/* The same in two steps: what follows from the range alone, and the draw. */
+struct sr_lambda_law {
+    struct sr_lambda_range range;
+    float e_lo, growth, above_lo, above_hi; // e, e_hi / e_lo - 1, 1 + e_lo, 1 + e_hi [1]
+};
+struct sr_lambda_law sr_lambda_law(struct sr_lambda_range range);
+struct sr_wavelengths sr_wavelengths_draw(const struct sr_lambda_law *law, float u);
 /* After dispersion only the first wavelength goes on, with 1/SR_LAMBDA_COUNT of its density. Idempotent. */
 void sr_wavelengths_terminate_secondary(struct sr_wavelengths *w);
 static inline bool sr_wavelengths_secondary_terminated(const struct sr_wavelengths *w)

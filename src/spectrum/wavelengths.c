@@ -32,14 +32,8 @@ static sr_spectrum logarithm(sr_spectrum w)
     return __builtin_convertvector(k, sr_spectrum) * 0.693147181f + (q * q2 * series + 2.0f * q);
 }
 
-struct sr_wavelengths sr_wavelengths_sample(struct sr_lambda_range range, float u)
+struct sr_lambda_law sr_lambda_law(struct sr_lambda_range range)
 {
-    sr_spectrum v;
-    for (int i = 0; i < SR_LAMBDA_COUNT; ++i)
-        v[i] = (float)i / SR_LAMBDA_COUNT;
-    v += u;
-    v = sr_spectrum_select(v >= 1.0f, v - 1.0f, v);
-
     float x = SLOPE * (range.lo - CENTRE), y = SLOPE * (range.hi - range.lo);
     y = y < TAIL ? y : TAIL;
     sr_spectrum exponents = SR_BLACK + y;
@@ -48,17 +42,34 @@ struct sr_wavelengths sr_wavelengths_sample(struct sr_lambda_range range, float 
     float e_lo = exponentials[0], d = exponentials[1] - 1;
     if (y < 0.25f) // the series keeps the digits that the difference loses
         d = y * (1 + y / 2 * (1 + y / 3 * (1 + y / 4 * (1 + y / 5 * (1 + y / 6)))));
-    float above_lo = 1 + e_lo, above_hi = 1 + e_lo * (1 + d);
+    return (struct sr_lambda_law){range, e_lo, d, 1 + e_lo, 1 + e_lo * (1 + d)};
+}
+
+struct sr_wavelengths sr_wavelengths_draw(const struct sr_lambda_law *law, float u)
+{
+    sr_spectrum v;
+    for (int i = 0; i < SR_LAMBDA_COUNT; ++i)
+        v[i] = (float)i / SR_LAMBDA_COUNT;
+    v += u;
+    v = sr_spectrum_select(v >= 1.0f, v - 1.0f, v);
+
+    float e_lo = law->e_lo, d = law->growth;
     sr_spectrum share = v * d;
-    sr_spectrum grown = 1.0f + share * above_lo / (above_lo + e_lo * (d - share)); // 1 + delta
+    sr_spectrum grown = 1.0f + share * law->above_lo / (law->above_lo + e_lo * (d - share)); // 1 + delta
 
     struct sr_wavelengths w;
     w.known = NULL;
-    sr_spectrum lambda = range.lo + logarithm(grown) * (1 / SLOPE);
-    w.lambda = sr_spectrum_select(lambda > range.hi, SR_BLACK + range.hi, lambda);
+    sr_spectrum lambda = law->range.lo + logarithm(grown) * (1 / SLOPE);
+    w.lambda = sr_spectrum_select(lambda > law->range.hi, SR_BLACK + law->range.hi, lambda);
     sr_spectrum inverse = 1.0f / (1.0f + e_lo * grown);
-    w.pdf = SLOPE / d * grown * (above_lo * inverse) * (above_hi * inverse);
+    w.pdf = SLOPE / d * grown * (law->above_lo * inverse) * (law->above_hi * inverse);
     return w;
+}
+
+struct sr_wavelengths sr_wavelengths_sample(struct sr_lambda_range range, float u)
+{
+    struct sr_lambda_law law = sr_lambda_law(range);
+    return sr_wavelengths_draw(&law, u);
 }
 
 void sr_wavelengths_terminate_secondary(struct sr_wavelengths *w)
