@@ -16,8 +16,6 @@
 
 typedef float v8 __attribute__((vector_size(32)));
 typedef int32_t v8i __attribute__((vector_size(32)));
-typedef int16_t v8s __attribute__((vector_size(16)));
-typedef uint16_t v8u __attribute__((vector_size(16)));
 
 // what rounding may take from a cosine; and the least weight of a child that may contribute, for the sake of spread normals
 static const float slack = 2e-3f, least = 0.02f;
@@ -45,18 +43,27 @@ static inline v8 magnitude(v8 a)
     return (v8)((v8i)a & 0x7fffffff);
 }
 
-static inline v8 from_u16(const uint16_t *p)
+// the members of eight pairs of 16 bits: the first without sign, either with its sign (the machine is little-endian)
+static inline v8i pairs(const void *p)
 {
-    v8u a;
+    v8i a;
     __builtin_memcpy(&a, p, sizeof a);
-    return __builtin_convertvector(__builtin_convertvector(a, v8i), v8);
+    return a;
 }
 
-static inline v8 from_s16(const int16_t *p)
+static inline v8 first_unsigned(v8i a)
 {
-    v8s a;
-    __builtin_memcpy(&a, p, sizeof a);
-    return __builtin_convertvector(__builtin_convertvector(a, v8i), v8) * (1 / 32767.0f);
+    return __builtin_convertvector(a & 0xffff, v8);
+}
+
+static inline v8 first(v8i a)
+{
+    return __builtin_convertvector(a << 16 >> 16, v8) * (1 / 32767.0f);
+}
+
+static inline v8 second(v8i a)
+{
+    return __builtin_convertvector(a >> 16, v8) * (1 / 32767.0f);
 }
 
 static inline v8 load(const float *p)
@@ -76,18 +83,19 @@ static inline v8 importance(const struct sr_light_tree_node *b, sr_vec3 p, sr_ve
 {
     const v8 zero = {0};
     // from the centres to the receiver
-    v8 dx = (p.x - b->origin.x) - b->step * from_u16(b->centre[0]);
-    v8 dy = (p.y - b->origin.y) - b->step * from_u16(b->centre[1]);
-    v8 dz = (p.z - b->origin.z) - b->step * from_u16(b->centre[2]);
+    v8i along_x = pairs(b->along[0]), along_y = pairs(b->along[1]), along_z = pairs(b->along[2]), cone = pairs(b->cone);
+    v8 dx = (p.x - b->origin.x) - b->step * first_unsigned(along_x);
+    v8 dy = (p.y - b->origin.y) - b->step * first_unsigned(along_y);
+    v8 dz = (p.z - b->origin.z) - b->step * first_unsigned(along_z);
     v8 d2 = dx * dx + dy * dy + dz * dz;
     v8 power = load(b->power), r = load(b->radius);
     v8i is_inside = d2 <= r * r;
     v8 reach2 = larger(d2, r * r + 1e-18f);
     v8 cos_b = root(larger(d2 - r * r, zero)); // times d, like all that follow
 
-    v8 cos_o = from_s16(b->cos_o), cos_e = from_s16(b->cos_e);
+    v8 cos_o = first(cone), cos_e = second(cone);
     v8 sin_o = root(larger(1 - cos_o * cos_o, zero));
-    v8 cos_w = from_s16(b->axis[0]) * dx + from_s16(b->axis[1]) * dy + from_s16(b->axis[2]) * dz;
+    v8 cos_w = second(along_x) * dx + second(along_y) * dy + second(along_z) * dz;
     cos_w = select(power < 0, magnitude(cos_w), cos_w);
     v8 sin_w = root(larger(d2 - cos_w * cos_w, zero));
 

@@ -12,9 +12,13 @@
 struct sr_light_tree_node {
     sr_vec3 origin;                                  // [m] centres are origin + step * centre
     float step;                                      // [m]
-    uint16_t centre[3][SR_LIGHT_TREE_WIDTH];         // [step]
-    int16_t axis[3][SR_LIGHT_TREE_WIDTH];            // [1/32767]
-    int16_t cos_o[SR_LIGHT_TREE_WIDTH], cos_e[SR_LIGHT_TREE_WIDTH]; // [1/32767]
+    struct { // pairs, so that a load of eight of them is two shifts away from either
+        uint16_t centre; // [step]
+        int16_t axis;    // [1/32767]
+    } along[3][SR_LIGHT_TREE_WIDTH];
+    struct {
+        int16_t cos_o, cos_e; // [1/32767]
+    } cone[SR_LIGHT_TREE_WIDTH];
     float radius[SR_LIGHT_TREE_WIDTH];               // [m]
     float power[SR_LIGHT_TREE_WIDTH];                // [cd sr] of one side; negative: two sides glow; 0: nothing there
     uint32_t child[SR_LIGHT_TREE_WIDTH];             // node, or SR_LIGHT_TREE_LEAF | light

@@ -241,9 +241,9 @@ static void store(const struct build *b, struct sr_light_tree_node *node, int sl
     v4 at = centre_of(child) - (v4){node->origin.x, node->origin.y, node->origin.z, 0};
     double off2 = 0, dot = 0, length2 = 0;
     for (int a = 0; a < 3; ++a) {
-        node->centre[a][slot] = (uint16_t)(node->step > 0 ? sr_clamp(at[a] / node->step + 0.5f, 0, 65535) : 0);
-        node->axis[a][slot] = (int16_t)lrintf(child->sum[a] * 32767);
-        double off = (double)node->centre[a][slot] * (double)node->step - (double)at[a], q = node->axis[a][slot];
+        node->along[a][slot].centre = (uint16_t)(node->step > 0 ? sr_clamp(at[a] / node->step + 0.5f, 0, 65535) : 0);
+        node->along[a][slot].axis = (int16_t)lrintf(child->sum[a] * 32767);
+        double off = (double)node->along[a][slot].centre * (double)node->step - (double)at[a], q = node->along[a][slot].axis;
         off2 += off * off;
         dot += q * (double)child->sum[a];
         length2 += q * q;
@@ -251,8 +251,8 @@ static void store(const struct build *b, struct sr_light_tree_node *node, int sl
     node->radius[slot] = (float)((sqrt(off2) + (double)sr_length(vec3(child->hi - child->lo)) / 2) * (1 + 1e-6)) + b->slop;
     double turned = length2 > 0 ? acos(fmin(dot / sqrt(length2), 1)) : 0;
     double widest = acos((double)sr_clamp(child->lo[3], -1, 1)) + turned;
-    node->cos_o[slot] = widest < (double)SR_PI ? round_down((float)cos(widest)) : -32767;
-    node->cos_e[slot] = round_down(-child->hi[3]);
+    node->cone[slot].cos_o = widest < (double)SR_PI ? round_down((float)cos(widest)) : -32767;
+    node->cone[slot].cos_e = round_down(-child->hi[3]);
     node->power[slot] = child->is_two_sided ? -child->sum[3] : child->sum[3];
 }
 
