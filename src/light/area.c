@@ -82,24 +82,42 @@ static sr_spectrum Le(const void *self, const struct sr_point *there, sr_vec3 w,
     return radiance(((const struct sr_light_area *)self)->emission, there->n, there->uv, w, wavelengths);
 }
 
-struct sr_light_area sr_light_area_of(struct sr_shape shape, uint32_t primitive, const struct sr_light_emission *emission, bool is_ghost)
+static void prepare_flat(struct sr_light_area *m)
 {
-    struct sr_light_area m = {.shape = shape, .primitive = primitive, .emission = emission, .is_ghost = is_ghost,
-                              .area = shape.model->area(shape.self, primitive)};
-    m.is_flat = !emission->texels.width && m.area > 0 && shape.model->flat && shape.model->flat(shape.self, primitive, &m.flat);
-    if (!m.is_flat)
-        return m;
-    const struct sr_shape_flat *a = &m.flat;
+    const struct sr_shape_flat *a = &m->flat;
     sr_vec3 across = sr_sub(a->f, a->e), diagonal = sr_add(a->e, a->f);
     sr_vec3 largest = {fabsf(a->corner.x) + fabsf(a->e.x) + fabsf(a->f.x), fabsf(a->corner.y) + fabsf(a->e.y) + fabsf(a->f.y),
                        fabsf(a->corner.z) + fabsf(a->e.z) + fabsf(a->f.z)};
     float extent = sqrtf(sr_max(sr_length2(across), a->is_triangle ? sr_max(sr_length2(a->e), sr_length2(a->f)) : sr_length2(diagonal)));
-    m.centre = sr_mad(a->corner, a->is_triangle ? 1.0f / 3 : 0.5f, diagonal);
-    m.far2 = sr_sqr(1.5f * extent);
-    m.inverse_area = 1 / m.area;
+    m->kind = SR_LIGHT_FLAT;
+    m->centre = sr_mad(a->corner, a->is_triangle ? 1.0f / 3 : 0.5f, diagonal);
+    m->far2 = sr_sqr(1.5f * extent);
+    m->inverse_area = 1 / m->area;
     // corner + u e + v f is rounded as often as gamma(8) allows, and once more where it is moved off
-    m.off = 10 * SR_MACHINE_EPSILON * (fabsf(a->n.x) * largest.x + fabsf(a->n.y) * largest.y + fabsf(a->n.z) * largest.z) +
-            2 * SR_MACHINE_EPSILON * sr_max_component(largest) + 1e-37f;
+    m->off = 10 * SR_MACHINE_EPSILON * (fabsf(a->n.x) * largest.x + fabsf(a->n.y) * largest.y + fabsf(a->n.z) * largest.z) +
+             2 * SR_MACHINE_EPSILON * sr_max_component(largest) + 1e-37f;
+}
+
+static void prepare_round(struct sr_light_area *m)
+{
+    sr_vec3 c = m->round.centre;
+    float radius = m->round.radius, largest = sr_max(fabsf(c.x), sr_max(fabsf(c.y), fabsf(c.z))) + radius;
+    m->kind = SR_LIGHT_ROUND;
+    m->centre = c;
+    m->off = 12 * SR_MACHINE_EPSILON * largest + 4e-7f * radius;
+    m->far2 = sr_sqr(1.001f * radius + 4 * m->off); // not at the surface itself
+}
+
+struct sr_light_area sr_light_area_of(struct sr_shape shape, uint32_t primitive, const struct sr_light_emission *emission, bool is_ghost)
+{
+    struct sr_light_area m = {.shape = shape, .primitive = primitive, .emission = emission, .is_ghost = is_ghost,
+                              .area = shape.model->area(shape.self, primitive)};
+    if (emission->texels.width || !(m.area > 0)) // images want (u, v)
+        return m;
+    if (shape.model->flat && shape.model->flat(shape.self, primitive, &m.flat))
+        prepare_flat(&m);
+    else if (shape.model->round && shape.model->round(shape.self, primitive, &m.round))
+        prepare_round(&m);
     return m;
 }
 
@@ -125,16 +143,48 @@ static inline bool sample_flat(const struct sr_light_area *m, sr_vec3 from, sr_v
     return s->pdf < INFINITY;
 }
 
-static inline bool looks_small(const struct sr_light_area *m, sr_vec3 from)
+// 1 - cos of the half angle under which a sphere is seen from the squared distance d2
+static inline float cone(float radius, float d2)
 {
-    return m->is_flat && sr_length2(sr_sub(m->centre, from)) > m->far2;
+    float s2 = radius * radius / d2;
+    return s2 / (1 + sr_safe_sqrt(1 - s2));
+}
+
+/* By solid angle within the cone of the sphere: pdf = 1 / (2 pi (1 - cos theta_max)). theta: at the receiver, from the axis;
+ * beta: on the sphere, between ray and radius; alpha = beta - theta: at the centre, where the point is seen. */
+static inline bool sample_round(const struct sr_light_area *m, sr_vec3 from, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
+{
+    if (m->round.side < 0 && !m->emission->two_sided)
+        return false;
+    sr_vec3 to = sr_sub(m->centre, from);
+    float d2 = sr_length2(to), rest = cone(m->round.radius, d2), x = u.x * rest;
+    float cos_theta = 1 - x, sin_theta = sqrtf(x * (2 - x));
+    float sin2_beta = sr_min(1, u.x * (2 - x) / (2 - rest)), sin_beta = sqrtf(sin2_beta), cos_beta = sqrtf(1 - sin2_beta);
+    float sin_alpha = sin_beta * cos_theta - cos_beta * sin_theta, cos_alpha = cos_beta * cos_theta + sin_beta * sin_theta;
+    float sin_phi, cos_phi;
+    sr_sin_cos_turn(u.y, &sin_phi, &cos_phi);
+    struct sr_frame f = sr_frame_from_z(sr_scale(1 / sqrtf(d2), to));
+    sr_vec3 n = sr_to_world(&f, (sr_vec3){sin_alpha * cos_phi, sin_alpha * sin_phi, -cos_alpha});
+    sr_vec3 p = sr_mad(m->centre, m->round.radius + m->off, n), d = sr_sub(p, from);
+    s->distance = sr_length(d);
+    s->wi = sr_scale(1 / s->distance, d);
+    s->p = p;
+    s->L = sr_spd_along(&m->emission->emitted, w);
+    s->pdf = SR_INV_PI * 0.5f / rest;
+    s->is_delta = m->is_ghost;
+    return s->pdf < INFINITY && s->distance > 0;
+}
+
+static inline bool is_far(const struct sr_light_area *m, sr_vec3 from)
+{
+    return m->kind != SR_LIGHT_ANY && sr_length2(sr_sub(m->centre, from)) > m->far2;
 }
 
 static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
 {
     const struct sr_light_area *m = self;
-    if (looks_small(m, reference->p))
-        return sample_flat(m, reference->p, u, w, s);
+    if (is_far(m, reference->p))
+        return m->kind == SR_LIGHT_FLAT ? sample_flat(m, reference->p, u, w, s) : sample_round(m, reference->p, u, w, s);
     struct sr_shape_sample x;
     if (!m->shape.model->sample(m->shape.self, m->primitive, reference, u, &x) || !(x.pdf > 0) || isinf(x.pdf))
         return false;
@@ -156,8 +206,10 @@ static float pdf(const void *self, const struct sr_point *reference, sr_vec3 wi,
     const struct sr_light_area *m = self;
     if (m->is_ghost)
         return 0;
-    if (!looks_small(m, reference->p))
+    if (!is_far(m, reference->p))
         return m->shape.model->pdf(m->shape.self, m->primitive, reference, wi, there);
+    if (m->kind == SR_LIGHT_ROUND)
+        return SR_INV_PI * 0.5f / cone(m->round.radius, sr_length2(sr_sub(m->centre, reference->p)));
     sr_vec3 d = sr_sub(there->p, reference->p);
     float height = fabsf(sr_dot(m->flat.n, d)), r2 = sr_length2(d), r = sqrtf(r2);
     return height > 1e-7f * r ? r2 * r * m->inverse_area / height : 0;

@@ -70,11 +70,15 @@ struct sr_light_area {
     const struct sr_light_emission *emission; // shared by all primitives of the shape
     float area;                               // [m^2]
     bool is_ghost; // its surface is never met by rays (alpha 0 everywhere): only light sampling finds it, with weight 1
-    // derived by sr_light_area_of: parallelograms and triangles are drawn by area where they look small
-    bool is_flat;
-    struct sr_shape_flat flat;
+    // derived by sr_light_area_of: parallelograms and triangles are drawn by area where they look small, spheres by their cone
+    // from outside
+    enum { SR_LIGHT_ANY, SR_LIGHT_FLAT, SR_LIGHT_ROUND } kind;
+    union {
+        struct sr_shape_flat flat;
+        struct sr_shape_round round;
+    };
     sr_vec3 centre;      // [m]
-    float far2;          // [m^2] squared distance of the centre beyond which it looks small
+    float far2;          // [m^2] squared distance of the centre beyond which that is done
     float inverse_area;  // [1/m^2]
     float off;           // [m] along the normal, beyond all rounding errors of points on it
 };

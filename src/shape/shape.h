@@ -25,6 +25,13 @@ struct sr_shape_flat {
     bool is_triangle;
 };
 
+/* A primitive that is a whole sphere in the world. */
+struct sr_shape_round {
+    sr_vec3 centre; // [m]
+    float radius;   // [m]
+    float side;     // [1] 1, or -1 where outside is inside
+};
+
 struct sr_shape_placement {
     struct sr_transform object_to_world;
     bool reverse_orientation; // as the scene file says; handedness of the transform comes on top
@@ -58,6 +65,8 @@ struct sr_shape_model {
     void (*normals)(const void *self, uint32_t primitive, sr_vec3 *axis, float *cos_theta);
     /* Whether it is a triangle or a parallelogram of one normal, and which. NULL: none is. */
     bool (*flat)(const void *self, uint32_t primitive, struct sr_shape_flat *flat);
+    /* The same of a sphere. */
+    bool (*round)(const void *self, uint32_t primitive, struct sr_shape_round *round);
 };
 extern const struct sr_shape_model *const sr_shape_models[]; // ends with NULL
 const struct sr_shape_model *sr_shape_model_find(const char *name);

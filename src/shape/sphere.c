@@ -289,6 +289,14 @@ static void normals(const void *self, uint32_t primitive, sr_vec3 *axis, float *
     *cos_theta = -1;
 }
 
+static bool round_(const void *self, uint32_t primitive, struct sr_shape_round *round)
+{
+    (void)primitive;
+    const struct sr_shape_sphere *s = self;
+    *round = (struct sr_shape_round){s->centre, s->world_radius, (float)s->quadric.side};
+    return s->is_full && s->is_rigid;
+}
+
 const struct sr_shape_model sr_shape_sphere = {
     .name = "sphere",
     .params = params,
@@ -304,4 +312,5 @@ const struct sr_shape_model sr_shape_sphere = {
     .sample = sample,
     .pdf = pdf,
     .normals = normals,
+    .round = round_,
 };
