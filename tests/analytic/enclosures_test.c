@@ -98,11 +98,11 @@ static struct estimate L990;
 static void integrating_sphere(const struct row *row)
 {
     L990 = sphere_radiance(0.99, 512);
-    check(row, "path", L990, 64 * GOAL);
+    check(row, "path", L990, 96 * GOAL);
 }
 static void multiplier(const struct row *row)
 {
-    check(row, "path", scaled(L990, (double)SR_PI * 4 * (double)SR_PI * 0.15 * 0.15), 64 * GOAL);
+    check(row, "path", scaled(L990, (double)SR_PI * 4 * (double)SR_PI * 0.15 * 0.15), 96 * GOAL);
 }
 static void amplification(const struct row *row)
 {
