@@ -81,7 +81,7 @@ TEST(input_transform_that_is_no_number)
 TEST(input_unsupported_and_unknown_things)
 {
     expect_refused(HEAD "Shape \"hyperboloid\"\n", "bad.pbrt:6:1", "hyperboloid");
-    expect_refused(HEAD "Material \"hair\"\nShape \"trianglemesh\" " QUAD, "bad.pbrt:6:1", "hair");
+    expect_refused(HEAD "Material \"subsurface\"\nShape \"trianglemesh\" " QUAD, "bad.pbrt:6:1", "subsurface");
     expect_refused(HEAD "Shapes \"sphere\"\n", "bad.pbrt:6:1", "Shape");
     expect_refused("Camera \"realistic\"\nWorldBegin\n", "bad.pbrt:1:1", "realistic");
 }
