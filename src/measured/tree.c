@@ -33,7 +33,7 @@ struct growing {
     struct scan t;
     struct sr_array words;
     int rank;
-    bool failed;
+    uint64_t values;
 };
 
 static void skip(struct scan *t)
@@ -100,6 +100,7 @@ static bool node(struct growing *g, int depth)
             return false;
         }
         ((union word *)g->words.data)[head].link = 1 + k;
+        g->values += count;
     }
     skip(t);
     if (t->at >= t->end || *t->at != '}') {
@@ -126,7 +127,7 @@ static sr_status read_block(const struct source *s, const struct xml_block *bloc
         if (!tree->words)
             sr_fail(s->error, SR_ERROR_RESOURCE, "%s: not enough memory", s->name);
         ok = tree->words != NULL;
-        *values += g.words.count;
+        *values += g.values;
     }
     sr_array_free(&g.words);
     return ok ? SR_OK : s->error->status;

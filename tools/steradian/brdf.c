@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const struct command *const parts[] = {&brdf_list,  &brdf_show, &brdf_eval,    &brdf_reflectance,
+static const struct command *const parts[] = {&brdf_list,  &brdf_info, &brdf_show,    &brdf_eval, &brdf_reflectance,
                                               &brdf_check, &brdf_fit,  &brdf_convert, &brdf_plot};
 enum { PARTS = sizeof parts / sizeof parts[0] };
 
