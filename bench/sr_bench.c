@@ -5,7 +5,7 @@
  *   paths/s of one thread and of all threads, rays/s, thread efficiency,
  *   ray-replay efficiency eta = (time of the bare ray caster for the very rays of the render) / (time of the render),
  *   time to read, to build the acceleration structure, peak memory.
- * Each case runs in a process of its own, so that its peak memory is its own. */
+ * Each case runs in a process of its own, so that its peak memory is its own. --bsdf times the scattering models instead. */
 #include "bsdf_bench.h"
 #include "import/import.h"
 #include "render/render.h"
