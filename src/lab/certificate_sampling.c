@@ -188,7 +188,7 @@ static double integrate(struct integrand *g, double x, double y, double size, bo
     // an edge of the density near the square's own border meets no node of Gauss: Simpson's lie on the border
     double odd = fabs(sum - simpson(g, x, y, size, below)) * area;
     bool is_even = changed <= fmax(tolerance, 1e-5 * sum * area) && odd <= fmax(tolerance, 0.03 * sum * area);
-    if (forced <= 0 && (is_even || depth == 0 || g->evaluations > g->most)) {
+    if ((forced <= 0 && (is_even || depth == 0)) || g->evaluations > g->most) {
         *error += changed / 2; // the finer rule is much better where f is smooth, and twice as good at an edge
         return sum * area;
     }
@@ -245,7 +245,7 @@ static void build(struct certifying *c, sr_vec3 wo, struct cells *cells, struct 
 /* Expected shares of all leaves, and of both hemispheres together. */
 static double expect(struct certifying *c, sr_vec3 wo, struct cells *cells, double n, double *error)
 {
-    struct integrand g = {.s = c->subject, .wo = wo, .most = 3000000};
+    struct integrand g = {.s = c->subject, .wo = wo, .most = 5000000};
     double total = 0;
     *error = 0;
     for (int i = 0; i < cells->count; ++i) {
@@ -259,7 +259,7 @@ static double expect(struct certifying *c, sr_vec3 wo, struct cells *cells, doub
             q->error = 0;
             q->expected = integrate(&g, q->x, q->y, q->size, q->below, whole, tolerance, 9, forced, &q->error);
             double m = q->expected * FIRST_RUN;
-            if (fabs(q->first - m) < (forced ? 4 : 3) * sqrt(m + 1) + 1)
+            if (fabs(q->first - m) < (forced ? 4 : 3) * sqrt(m + 1) + 1 || g.evaluations > g.most / 2)
                 break;
         }
         total += q->expected;
