@@ -82,6 +82,7 @@ struct sr_bsdf_model {
     X(blinn_phong)                                                                                                     \
     X(ashikhmin_shirley)                                                                                               \
     X(lafortune)                                                                                                       \
+    X(poulin_fournier)                                                                                                 \
     X(strauss)                                                                                                         \
     X(coupled)                                                                                                         \
     X(lommel_seeliger)                                                                                                 \
