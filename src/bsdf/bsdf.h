@@ -101,6 +101,7 @@ struct sr_bsdf_model {
     X(ward_gmd)                                                                                                        \
     X(microfacet_dielectric)                                                                                           \
     X(beckmann_dielectric)                                                                                             \
+    X(ggx_conductor_ms)                                                                                                \
     X(thin_dielectric)                                                                                                 \
     X(coated_diffuse)                                                                                                  \
     X(coated_conductor)                                                                                                \

@@ -7,19 +7,11 @@
  *
  * Reciprocal; with F = 1 it returns all light (to 3e-4, the error of the table). What bounces is taken to leave without
  * remembering its direction, after F_avg at each bounce: colours deepen with roughness as measured metals' do.
- * E is tabulated once, when first asked for, by a quadrature over visible normals: 64 z by 64 alpha, both even in their
- * square roots. One alpha for all azimuths: two would need a table of two dimensions more.
+ * E is a table of ours, see ggx_energy.h. One alpha for all azimuths: two would need a table of two dimensions more.
  * C. Kulla & A. Conty, Revisiting physically based shading at Imageworks, 2017; the square of F_avg counts the first bounce
  * once. */
+#include "bsdf/ggx_energy.h"
 #include "bsdf/microfacet.h"
-
-#include <pthread.h>
-
-enum { NODES = 64, AZIMUTHS = 24, HEIGHTS = 48 };
-
-static float table[NODES][NODES]; // E by sqrt(alpha), sqrt(z)
-static float mean[NODES];         // E_avg by sqrt(alpha)
-static pthread_once_t once = PTHREAD_ONCE_INIT;
 
 struct ggx_conductor_ms {
     sr_spectrum eta, k; // [1]
@@ -39,75 +31,44 @@ static const struct sr_param params[] = {
     {0},
 };
 
-/* E = mean of G2 / G1 over the visible normals: even in azimuth and in height above the far end of a cap of the sphere. */
-static double albedo_by_quadrature(double z, double alpha, const double *x, const double *w)
+/* 1 - E(z) of the first term */
+static float lost(const struct ggx_conductor_ms *m, float z)
 {
-    double v_length = sqrt(alpha * alpha * (1 - z * z) + z * z), sum = 0;
-    double vx = alpha * sqrt(1 - z * z) / v_length, vz = z / v_length, area = z + v_length; // 2 s(wo)
-    for (int i = 0; i < HEIGHTS; ++i) {
-        double height = (1 - x[i]) * (1 + vz) - vz, r = sqrt(1 - height * height);
-        for (int j = 0; j < AZIMUTHS; ++j) {
-            double phi = (j + 0.5) * 3.14159265358979324 / AZIMUTHS;
-            double mx = alpha * (r * cos(phi) + vx), my = alpha * r * sin(phi), mz = height + vz;
-            double c = (mx * sqrt(1 - z * z) + mz * z) / (mx * mx + my * my + mz * mz); // |wo.m| / |m|
-            double ix = 2 * c * mx - sqrt(1 - z * z), iy = 2 * c * my, iz = 2 * c * mz - z;
-            if (iz > 0) // zi (zo + so) / (so zi + si zo)
-                sum += w[i] * iz * area / (v_length * iz + sqrt(alpha * alpha * (ix * ix + iy * iy) + iz * iz) * z);
-        }
-    }
-    return sum / AZIMUTHS;
-}
-
-static void make_table(void)
-{
-    double x[HEIGHTS], w[HEIGHTS], t[3], v[3];
-    sr_gauss_legendre(HEIGHTS, 0, 1, x, w);
-    for (int i = 0; i < NODES; ++i) {
-        double alpha = (double)i * i / ((NODES - 1) * (NODES - 1)), sum = 0;
-        for (int j = 0; j < NODES; ++j) {
-            double z = (double)j * j / ((NODES - 1) * (NODES - 1));
-            table[i][j] = i > 0 ? (float)albedo_by_quadrature(z > 1e-6 ? z : 1e-6, alpha, x, w) : 1;
-        }
-        for (int j = 0; j + 1 < NODES; ++j) { // 2 E z dz = 4 E t^3 dt, exact for what interpolation gives
-            sr_gauss_legendre(3, 0, 1, t, v);
-            for (int k = 0; k < 3; ++k) {
-                double root = (j + t[k]) / (NODES - 1);
-                sum += v[k] * 4 * root * root * root / (NODES - 1) *
-                       ((double)table[i][j] + t[k] * (double)(table[i][j + 1] - table[i][j]));
-            }
-        }
-        mean[i] = (float)sum;
-    }
-}
-
-static sr_status load(void *self, struct sr_arena *arena, struct sr_error *error)
-{
-    (void)self;
-    (void)arena;
-    (void)error;
-    pthread_once(&once, make_table);
-    return SR_OK;
+    z = sr_min(fabsf(z), 1);
+    float where = z * (1 + m->alpha) / (z + m->alpha) * (ENERGY_COLUMNS - 1);
+    int i = where < ENERGY_COLUMNS - 2 ? (int)where : ENERGY_COLUMNS - 2;
+    float t = where - (float)i;
+    const int32_t *lower = &ggx_energy[m->row][i], *upper = &ggx_energy[m->row + 1][i];
+    float a = sr_lerp(t, (float)lower[0], (float)lower[1]), b = sr_lerp(t, (float)upper[0], (float)upper[1]);
+    return larger(1 - 1e-6f * sr_lerp(m->between, a, b), 0);
 }
 
 static void ready(void *self, const struct sr_bsdf_at *at)
 {
-    static const float x[6] = {0.0337652429f, 0.1693953068f, 0.3806904070f, 0.6193095930f, 0.8306046932f, 0.9662347571f};
-    static const float w[6] = {0.0856622462f, 0.1803807865f, 0.2339569673f, 0.2339569673f, 0.1803807865f, 0.0856622462f};
+    static const float x[12] = {0.00921968288f, 0.0479413718f, 0.115048663f, 0.206341023f, 0.316084251f, 0.437383296f,
+                                0.562616704f,   0.683915749f,  0.793658977f, 0.884951337f, 0.952058628f, 0.990780317f};
+    static const float w[6] = {0.0235876682f, 0.0534696630f, 0.0800391643f, 0.101583713f, 0.116746268f, 0.124573523f};
     struct ggx_conductor_ms *m = self;
     (void)at;
     m->is_smooth = m->alpha < GGX_SMOOTH;
     if (m->is_smooth)
         return;
-    float where = sqrtf(sr_min(m->alpha, 1)) * (NODES - 1);
-    m->row = where < NODES - 2 ? (int32_t)where : NODES - 2;
+    m->alpha = sr_min(m->alpha, 1);
+    float where = sqrtf(m->alpha) * (ENERGY_ROWS - 1);
+    m->row = where < ENERGY_ROWS - 2 ? (int32_t)where : ENERGY_ROWS - 2;
     m->between = where - (float)m->row;
     sr_spectrum F = SR_BLACK;
-    for (int i = 0; i < 6; ++i)
-        F += conductor_fresnel(x[i], m->eta, m->k) * (2 * w[i] * x[i]);
+    for (int i = 0; i < 12; ++i) // Gauss and Legendre's rule
+        F += conductor_fresnel(x[i], m->eta, m->k) * (2 * w[i < 6 ? i : 11 - i] * x[i]);
     F = sr_spectrum_clamp(F, 0, 1);
-    float E = sr_lerp(m->between, mean[m->row], mean[m->row + 1]);
-    sr_spectrum share = F * F * E / (1 - F * (1 - E));
-    m->again = share / (SR_PI * larger(1 - E, 1e-6f));
+    // 1 - E_avg, by z = alpha (e^(v L) - 1), as 1 - E falls like alpha^2 / z^2 beyond alpha
+    float L = log1pf(1 / m->alpha), rest = 0;
+    for (int i = 0; i < 12; ++i) {
+        float z = m->alpha * expm1f(x[i] * L);
+        rest += 2 * w[i < 6 ? i : 11 - i] * L * (z + m->alpha) * z * lost(m, z);
+    }
+    sr_spectrum share = F * F * (1 - rest) / (1 - F * rest);
+    m->again = share / (SR_PI * larger(rest, 1e-9f));
     m->again_mean = sr_spectrum_mean(share);
 }
 
@@ -115,17 +76,6 @@ static uint32_t lobes(const void *self)
 {
     const struct ggx_conductor_ms *m = self;
     return SR_LOBE_REFLECTION | (m->is_smooth ? SR_LOBE_SPECULAR : SR_LOBE_GLOSSY | SR_LOBE_DIFFUSE);
-}
-
-/* 1 - E(z) of the first term */
-static float lost(const struct ggx_conductor_ms *m, float z)
-{
-    float where = sqrtf(sr_min(fabsf(z), 1)) * (NODES - 1);
-    int i = where < NODES - 2 ? (int)where : NODES - 2;
-    float t = where - (float)i;
-    float a = sr_lerp(t, table[m->row][i], table[m->row][i + 1]);
-    float b = sr_lerp(t, table[m->row + 1][i], table[m->row + 1][i + 1]);
-    return 1 - sr_lerp(m->between, a, b);
 }
 
 static float single_share(const struct ggx_conductor_ms *m, float lost_o)
@@ -204,7 +154,6 @@ const struct sr_bsdf_model sr_bsdf_ggx_conductor_ms = {
     .limits = "What bounces twice forgets its direction; one roughness for all azimuths",
     .params = params,
     .size = sizeof(struct ggx_conductor_ms),
-    .load = load,
     .ready = ready,
     .lobes = lobes,
     .f = f,
