@@ -112,7 +112,8 @@ struct sr_bsdf_model {
     X(measured)                                                                                                        \
     X(sheen)                                                                                                           \
     X(disney)                                                                                                          \
-    X(hair)
+    X(hair)                                                                                                            \
+    X(principled)
 
 #define SR_BSDF_DECLARE(name) extern const struct sr_bsdf_model sr_bsdf_##name;
 SR_BSDF_MODELS(SR_BSDF_DECLARE)
