@@ -113,7 +113,8 @@ struct sr_bsdf_model {
     X(sheen)                                                                                                           \
     X(disney)                                                                                                          \
     X(hair)                                                                                                            \
-    X(principled)
+    X(principled)                                                                                                      \
+    X(openpbr)
 
 #define SR_BSDF_DECLARE(name) extern const struct sr_bsdf_model sr_bsdf_##name;
 SR_BSDF_MODELS(SR_BSDF_DECLARE)

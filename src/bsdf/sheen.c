@@ -11,7 +11,7 @@
  * belongs to no height field, and there is no Fresnel factor: the lobe gains energy where all is grazing and alpha is
  * small (neubelt). To be put on top of something else by a material that takes its share away from below. Sampled
  * uniformly over the hemisphere. */
-#include "bsdf/bsdf.h"
+#include "bsdf/charlie.h"
 
 enum { NEUBELT, ESTEVEZ };
 
@@ -19,8 +19,7 @@ struct sheen {
     sr_spectrum reflectance; // [1]
     float alpha;             // [1]
     int32_t visibility;
-    float fit[5]; // A ... E
-    float fit_half; // L(1/2)
+    struct charlie charlie; // derived
 };
 
 static const struct sr_param params[] = {
@@ -31,20 +30,11 @@ static const struct sr_param params[] = {
     {0},
 };
 
-static float fitted(const float *p, float x)
-{
-    return p[0] / (1 + p[1] * powf(x, p[2])) + p[3] * x + p[4];
-}
-
 static void ready(void *self, const struct sr_bsdf_at *at)
 {
-    static const float sharp[5] = {25.3245f, 3.32435f, 0.16801f, -1.27393f, -4.85967f};
-    static const float broad[5] = {21.5473f, 3.82987f, 0.19823f, -1.97760f, -4.32054f};
     struct sheen *m = self;
     (void)at;
-    for (int i = 0; i < 5; ++i)
-        m->fit[i] = sr_lerp(sr_sqr(1 - m->alpha), broad[i], sharp[i]);
-    m->fit_half = fitted(m->fit, 0.5f);
+    m->charlie = charlie_of(m->alpha);
 }
 
 static uint32_t lobes(const void *self)
@@ -53,22 +43,15 @@ static uint32_t lobes(const void *self)
     return SR_LOBE_REFLECTION | SR_LOBE_GLOSSY;
 }
 
-static float lambda(const struct sheen *m, float c)
-{
-    return expf(c < 0.5f ? fitted(m->fit, c) : 2 * m->fit_half - fitted(m->fit, sr_max(1 - c, 0)));
-}
-
 static sr_spectrum f(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode)
 {
     const struct sheen *m = self;
     (void)mode;
     if (!(wo.z * wi.z > 0))
         return SR_BLACK;
-    sr_vec3 h = sr_add(wo, wi); // not normalised
-    float ci = fabsf(wi.z), co = fabsf(wo.z), sin2 = (h.x * h.x + h.y * h.y) / sr_length2(h);
-    float D = (2 + 1 / m->alpha) * powf(sin2, 0.5f / m->alpha) * (SR_INV_PI / 2);
-    float V = m->visibility == ESTEVEZ ? ci * co * (1 + lambda(m, ci) + lambda(m, co)) : ci + co - ci * co;
-    return m->reflectance * (D / (4 * V));
+    float ci = fabsf(wi.z), co = fabsf(wo.z);
+    float V = m->visibility == ESTEVEZ ? estevez_V(&m->charlie, ci, co) : neubelt_V(ci, co);
+    return m->reflectance * (charlie_D(&m->charlie, wo, wi) * V);
 }
 
 static float pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode)
