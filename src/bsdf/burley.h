@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Private to this room: what Burley's models of 2012 and 2015 share: Schlick's weight, tints, and the clear coat.
  *
- *     coat:  f = 1/4 w D(m) F(cd) / ((ci + s(ci)) (co + s(co))),   F = 0.04 + 0.96 (1 - cd)^5,   s(c) = sqrt(a^2 + c^2 - a^2 c^2), a = 1/4
+ *     coat:  f = 1/4 w D(m) F(cd) / ((ci + s(ci)) (co + s(co)))
+ *     F = 0.04 + 0.96 (1 - cd)^5,   s(c) = sqrt(a^2 + c^2 - a^2 c^2), a = 1/4
  *     D = (1 - g^2) / (pi ln(1/g^2) (sin^2 + g^2 cos^2))   [1/sr],   g = 0.1 ... 0.001 by gloss
  *
  * B. Burley, Physically Based Shading at Disney, 2012. */

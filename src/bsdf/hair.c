@@ -155,7 +155,7 @@ static struct view view_of(const struct hair *m, sr_vec3 wo)
     for (int p = 0; p < LOBES; ++p)
         sum += w.share[p] = sr_spectrum_mean(w.A[p]);
     for (int p = 0; p < LOBES; ++p)
-        w.share[p] /= sum;
+        w.share[p] = (1 - 0.01f * LOBES) * w.share[p] / sum + 0.01f; // none so seldom that its light comes as sparks
     return w;
 }
 
@@ -200,8 +200,6 @@ static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum s
     int p = 0;
     while (p < LOBES - 1 && u_lobe >= w.share[p])
         u_lobe -= w.share[p++];
-    if (!(w.share[p] > 0))
-        return false;
     float rest = sr_clamp(u_lobe / w.share[p], 0, 1);
     float c = sr_max(1 + m->v[p] * logf(u.x + (1 - u.x) * expf(-2 / m->v[p])), -1), sine, cosine;
     sin_cos_turn(rest, &sine, &cosine);

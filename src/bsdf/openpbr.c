@@ -5,9 +5,10 @@
  *     metal:   m w_s F82(cd) D G / (4 ci co)
  *     gloss:   (1 - m)(1 - t) C_s F(cd, eta_s) D G / (4 ci co)
  *     matte:   (1 - m)(1 - t) (1 - E_s(ci))(1 - E_s(co)) / (1 - <E_s>) f_EON(w_b C_b)
- *     glass:   (1 - m) t (C_s F D G / (4 ci co),   and through it C_t (1 - F) D G |wi.m| |wo.m| / (ci co (wi.m + wo.m / eta)^2))
- *     under the coat:  a = C_c^((1 / mu_i + 1 / mu_o) / 2), mu the cosines inside it;   K_matte = (1 - E_c(ci))(1 - E_c(co)) / (1 - <E_c>) d,
- *         K of the others = min(1 - E_c(ci), 1 - E_c(co)) d;   d = lerp(darkening, 1, (1 - k) / (1 - k E_b)),
+ *     glass:   (1 - m) t C_s F D G / (4 ci co)
+ *              through it (1 - m) t C_t (1 - F) D G |wi.m| |wo.m| / (ci co (wi.m + wo.m / eta)^2)
+ *     under the coat:  a = C_c^((1 / mu_i + 1 / mu_o) / 2), mu the cosines inside it;
+ *         K_matte = (1 - E_c(ci))(1 - E_c(co)) / (1 - <E_c>) d,   K of the others = min(1 - E_c(ci), 1 - E_c(co)) d;   d = lerp(darkening, 1, (1 - k) / (1 - k E_b)),
  *         k = the coat's reflectance from inside: Fresnel's for mirrors, 1 - (1 - <F>) / eta_c^2 for what is rough
  *
  * Names, weights, F82 (metals), the index under a coat, its roughening of what is below, alpha_x = r^2 sqrt(2 / (1 + (1 - a)^2)),
@@ -16,10 +17,11 @@
  *
  * What differs from a full solution of the layers, and from OpenPBR's own suggestions: layers are joined by directional albedos
  * E of the layer above (tables of Schlick's split, made when the first material is loaded) in a form that is the same from
- * both sides, which OpenPBR leaves open; light is lost between facets; fuzz is not Zeltner's. Not here: subsurface
- * scattering, volumes of transmission_depth, dispersion, thin walls, thin film, coat anisotropy, opacity, emission; they belong to
- * media, other models and the scene. Fresnel's index includes specular_weight for refraction, too, so that light is the
- * same from both sides. From below, what is not glass looks as from above. */
+ * both sides, which OpenPBR leaves open, and which returns up to 1.1 times what arrives at grazing; light is lost between
+ * facets; fuzz is not Zeltner's. Not here: subsurface scattering, volumes of transmission_depth, dispersion, thin walls, thin
+ * film, coat anisotropy, opacity, emission; they belong to media, other models and the scene. Light is refracted by the
+ * index that specular_weight has changed, so that it is the same from both sides. From below, what is not glass looks as
+ * from above. */
 #include "bsdf/burley.h"
 #include "bsdf/charlie.h"
 
@@ -432,5 +434,5 @@ const struct sr_bsdf_model sr_bsdf_openpbr = {
     .pdf = pdf,
     .sample = sample,
     .f_pdf = f_pdf,
-    .largest_albedo = 1.05f,
+    .largest_albedo = 1.1f,
 };
