@@ -66,8 +66,8 @@ struct bytes {
 };
 static inline void put(struct bytes *b, const void *data, size_t size)
 {
-    if (b->size + size > b->room) {
-        b->room = 2 * (b->size + size);
+    if (!b->data || b->size + size > b->room) {
+        b->room = 2 * (b->size + size) + 1;
         b->data = realloc(b->data, b->room);
         EXPECT(b->data);
     }
