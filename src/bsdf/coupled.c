@@ -99,5 +99,5 @@ const struct sr_bsdf_model sr_bsdf_coupled = {
     .pdf = pdf,
     .sample = sample,
     .albedo = albedo,
-    .largest_albedo = 1.0005f, // at 89.99 deg, where the table of what the gloss leaves over is interpolated
+    .largest_albedo = 1.005f, // toward grazing, where the table of what the gloss leaves over is interpolated
 };

@@ -215,12 +215,14 @@ void lab_subject_of_specimen(const struct sr_specimen *specimen, struct subject 
     sr_specimen_at(specimen, wavelengths(), 1, &s->at);
     s->asymmetry = 0;
     s->largest_albedo = 0;
+    bool gains = false;
     for (int i = 0; i < specimen->part_count; ++i) {
         const struct sr_bsdf_model *m = s->at.parts[i].model;
         s->asymmetry = fmax(s->asymmetry, (double)m->asymmetry);
         s->largest_albedo += (double)(specimen->parts[i].weight * sr_max(1, m->largest_albedo));
+        gains |= m->largest_albedo > 1;
     }
-    s->largest_albedo = fmax(s->largest_albedo, 1);
+    s->largest_albedo = gains ? fmax(s->largest_albedo, 1) : 1;
     look(s);
 }
 
