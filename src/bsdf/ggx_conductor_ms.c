@@ -31,7 +31,7 @@ static const struct sr_param params[] = {
     {0},
 };
 
-/* 1 - E(z) of the first term */
+/* 1 - E(z) of the first term; the table holds E in millionths, and differences of whole numbers lose no digits */
 static float lost(const struct ggx_conductor_ms *m, float z)
 {
     z = sr_min(fabsf(z), 1);
@@ -39,8 +39,9 @@ static float lost(const struct ggx_conductor_ms *m, float z)
     int i = where < ENERGY_COLUMNS - 2 ? (int)where : ENERGY_COLUMNS - 2;
     float t = where - (float)i;
     const int32_t *lower = &ggx_energy[m->row][i], *upper = &ggx_energy[m->row + 1][i];
-    float a = sr_lerp(t, (float)lower[0], (float)lower[1]), b = sr_lerp(t, (float)upper[0], (float)upper[1]);
-    return larger(1 - 1e-6f * sr_lerp(m->between, a, b), 0);
+    float a = sr_lerp(t, (float)(1000000 - lower[0]), (float)(1000000 - lower[1])),
+          b = sr_lerp(t, (float)(1000000 - upper[0]), (float)(1000000 - upper[1]));
+    return larger(1e-6f * sr_lerp(m->between, a, b), 0);
 }
 
 static void ready(void *self, const struct sr_bsdf_at *at)
@@ -70,6 +71,10 @@ static void ready(void *self, const struct sr_bsdf_at *at)
     sr_spectrum share = F * F * (1 - rest) / (1 - F * rest);
     m->again = share / (SR_PI * larger(rest, 1e-9f));
     m->again_mean = sr_spectrum_mean(share);
+    if (rest < 1e-4f) { // next to nothing bounces, less than the table knows
+        m->again = SR_BLACK;
+        m->again_mean = 0;
+    }
 }
 
 static uint32_t lobes(const void *self)

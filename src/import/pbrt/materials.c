@@ -33,10 +33,13 @@ static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, s
         return SR_OK;
     const struct sr_material_model *m = sr_material_model_find(e->model);
     if (!m) {
-        const char *names[120];
+        const char *names[40];
         size_t n = 0;
-        for (; n < 120 && sr_material_model((int)n); ++n)
-            names[n] = sr_material_model((int)n)->name;
+        const struct sr_material_model
+            *one; // first those with words of their own, then one for each BSDF: too many to list
+        while (n < 39 && (one = sr_material_model((int)n)) && one != sr_material_of_bsdf(sr_bsdf_model_find(one->name)))
+            names[n++] = one->name;
+        names[n++] = "and the models of 'steradian brdf list'";
         return sr_pbrt_unsupported(b, e, names, n);
     }
     struct sr_material *material = sr_arena_alloc(b->arena, sizeof *material);

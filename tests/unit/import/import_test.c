@@ -65,9 +65,11 @@ TEST(what_is_not_supported_says_so_and_what_is)
 {
     expect_error("WorldBegin\nShape \"curve\"", "2:1: Shape \"curve\" is not supported yet; supported: trianglemesh, "
                                                 "bilinearmesh, sphere, disk, cylinder, plymesh");
-    expect_error("WorldBegin\nMaterial \"hair\"\n" BALL,
-                 "2:1: Material \"hair\" is not supported yet; supported: diffuse, diffusetransmission, conductor, "
-                 "dielectric, thindielectric, coateddiffuse, coatedconductor, mix, interface");
+    expect_error(
+        "WorldBegin\nMaterial \"subsurface\"\n" BALL,
+        "2:1: Material \"subsurface\" is not supported yet; supported: diffuse, diffusetransmission, conductor, "
+        "dielectric, thindielectric, coateddiffuse, coatedconductor, mix, interface, and the models of 'steradian "
+        "brdf list'");
     expect_error("WorldBegin\nLightSource \"projection\"",
                  "2:1: LightSource \"projection\" is not supported yet; supported: point, spot, distant, infinite");
     expect_error("Camera \"realistic\"\nWorldBegin",
