@@ -23,12 +23,12 @@ render: all
 	@echo "The picture: $(OUT)/cornell-box.png; with error bars and auxiliary channels: $(OUT)/cornell-box.exr"
 
 test: all
-	ctest --test-dir $(BUILD) --output-on-failure
+	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS)
 
 test-asan: packages
 	cmake --preset asan >/dev/null
 	cmake --build build-asan --parallel $(JOBS)
-	ctest --test-dir build-asan --output-on-failure
+	ctest --test-dir build-asan --output-on-failure --parallel $(JOBS)
 
 test-tsan: packages
 	cmake --preset tsan >/dev/null
