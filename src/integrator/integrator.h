@@ -36,6 +36,11 @@ struct sr_integrator_model {
     sr_spectrum (*L)(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
                      struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker);
     bool knows_receivers; // weighs what a ray from start->receiver meets
+    /* Once the parameters are known: checks them, computes what follows from them. NULL: nothing to do. */
+    sr_status (*prepare)(void *self, struct sr_arena *arena, struct sr_error *error);
+    /* One sentence: which light of this scene the estimator cannot find, so that it is missing from the result. NULL, or
+     * returns NULL: none. */
+    const char *(*blind)(const void *self, const struct sr_scene *scene);
 };
 extern const struct sr_integrator_model *const sr_integrator_models[]; // ends with NULL
 const struct sr_integrator_model *sr_integrator_model_find(const char *name);

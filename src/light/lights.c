@@ -15,6 +15,7 @@
 struct choice {
     struct sr_light_tree tree;
     struct sr_alias alias;     // power: over all lights
+    const double *area_before; // [m^2] that glows before each block of lights, and in all
     const uint32_t *place;     // of each light: in the tree, NEVER or INFINITE
     const uint32_t *choosable; // uniform: those with power
     uint32_t choosable_count;
@@ -28,6 +29,19 @@ static float power_of(struct sr_light light)
     struct sr_light_bounds b;
     light.model->bounds(light.self, &b);
     return b.power > 0 && isfinite(b.power) ? b.power : 0;
+}
+
+enum { BLOCK = 32 }; // lights of which one sum of areas is kept
+static uint32_t block_count(uint32_t lights)
+{
+    return lights / BLOCK + (lights % BLOCK != 0);
+}
+
+// [m^2] of a surface that may shine
+static float glowing_area(struct sr_light light)
+{
+    const struct sr_light_area *m = light.self;
+    return light.model == &sr_light_area && m->emission->choice_luminance > 0 ? m->area : 0;
 }
 
 static const struct sr_table *white_of(struct sr_light light)
@@ -68,6 +82,16 @@ static sr_status build_choice(struct sr_arena *arena, struct sr_lights *l, struc
     }
     if (is_built && l->choice == SR_LIGHTS_POWER && c->choosable_count > 1)
         is_built = sr_alias_build(arena, weights, n, &c->alias);
+    uint32_t blocks = block_count(n);
+    double *area_before = sr_arena_alloc(arena, (blocks + 1) * sizeof *area_before), area = 0;
+    for (uint32_t b = 0; area_before && b <= blocks; ++b) {
+        area_before[b] = area;
+        for (uint32_t i = b * BLOCK; i < n && i < (b + 1) * BLOCK; ++i)
+            area += (double)glowing_area(l->lights[i]);
+    }
+    is_built = is_built && area_before;
+    if (is_built)
+        c->area_before = area_before;
     sr_free(choosable);
     sr_free(outside);
     sr_free(infinite);
@@ -142,4 +166,42 @@ float sr_lights_pmf(const struct sr_lights *lights, const struct sr_point *x, ui
     if (lights->choice == SR_LIGHTS_POWER)
         return c->alias.pmf[index];
     return c->place[index] == INFINITE ? c->share : c->share * sr_light_tree_pmf(&c->tree, x->p, x->ns, c->place[index]);
+}
+
+bool sr_lights_pick_by_area(const struct sr_lights *lights, const struct sr_point *x, float u, uint32_t *index, float *pmf)
+{
+    const struct choice *c = lights->tree;
+    uint32_t lo = 0, hi = block_count(lights->count);
+    if (!c || !(c->area_before[hi] > 0))
+        return false;
+    double total = c->area_before[hi], left = with_more_bits(u, x->p) * total;
+    while (hi - lo > 1) {
+        uint32_t middle = lo + (hi - lo) / 2;
+        if (c->area_before[middle] <= left)
+            lo = middle;
+        else
+            hi = middle;
+    }
+    left -= c->area_before[lo];
+    uint32_t end = (lo + 1) * BLOCK < lights->count ? (lo + 1) * BLOCK : lights->count, last = UINT32_MAX;
+    for (uint32_t i = lo * BLOCK; i < end; ++i) {
+        double area = (double)glowing_area(lights->lights[i]);
+        if (area > 0)
+            last = i;
+        left -= area;
+        if (left < 0)
+            break;
+    }
+    if (last == UINT32_MAX)
+        return false;
+    *index = last;
+    *pmf = (float)((double)glowing_area(lights->lights[last]) / total);
+    return true;
+}
+
+float sr_lights_pmf_by_area(const struct sr_lights *lights, uint32_t index)
+{
+    const struct choice *c = lights->tree;
+    double total = c ? c->area_before[block_count(lights->count)] : 0;
+    return total > 0 ? (float)((double)glowing_area(lights->lights[index]) / total) : 0;
 }

@@ -424,6 +424,27 @@ static bool sample(const void *self, uint32_t primitive, const struct sr_point *
     return s->pdf > 0 && isfinite(s->pdf);
 }
 
+/* Density by area [1/m^2] at `there`. */
+static float area_pdf(const void *self, uint32_t primitive, const struct sr_point *there)
+{
+    const struct sr_shape_patches *m = self;
+    if (m->kinds[primitive] == EMPTY)
+        return 0;
+    sr_vec3 v[4];
+    vertices(m, primitive, v);
+    sr_vec2 h = {0.5f, 0.5f};
+    if (m->kinds[primitive] == GENERAL) {
+        // where on the patch `there` is: the meeting nearest to it of the line through it along its normal
+        struct meeting at[2];
+        int found = meet(v, there->p, there->n, 1e-3, at);
+        if (found == 0)
+            return 0;
+        const struct meeting *k = &at[found == 2 && fabs(at[1].t) < fabs(at[0].t) ? 1 : 0];
+        h = (sr_vec2){sr_clamp((float)k->u, 0, 1), sr_clamp((float)k->v, 0, 1)};
+    }
+    return area_density(m, primitive, v, h);
+}
+
 static float pdf(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec3 wi,
                  const struct sr_point *there)
 {
@@ -442,17 +463,7 @@ static float pdf(const void *self, uint32_t primitive, const struct sr_point *re
         sr_vec2 u = sr_spherical_rectangle_invert(reference->p, v[0], sr_sub(v[1], v[0]), sr_sub(v[2], v[0]), there->p);
         return density * sr_warp_bilinear_pdf(u, w);
     }
-    sr_vec2 h = {0.5f, 0.5f};
-    if (m->kinds[primitive] == GENERAL) {
-        // where on the patch `there` is: the meeting nearest to it of the line through it along its normal
-        struct meeting at[2];
-        int found = meet(v, there->p, there->n, 1e-3, at);
-        if (found == 0)
-            return 0;
-        const struct meeting *k = &at[found == 2 && fabs(at[1].t) < fabs(at[0].t) ? 1 : 0];
-        h = (sr_vec2){sr_clamp((float)k->u, 0, 1), sr_clamp((float)k->v, 0, 1)};
-    }
-    return sr_density_seen_from(reference->p, there->p, there->n, area_density(m, primitive, v, h));
+    return sr_density_seen_from(reference->p, there->p, there->n, area_pdf(m, primitive, there));
 }
 
 /* dpdu x dpdv is bilinear in (u, v), so all normals lie in the hull of the four at the corners. */
@@ -503,6 +514,7 @@ const struct sr_shape_model sr_shape_bilinearmesh = {
     .uv = uv,
     .sample = sample,
     .pdf = pdf,
+    .area_pdf = area_pdf,
     .normals = normals,
     .flat = flat,
 };

@@ -144,6 +144,15 @@ static float pdf(const void *self, uint32_t primitive, const struct sr_point *re
     return sr_quadric_pdf(&c->quadric, (sr_dvec3){p.x / rho, p.y / rho, 0}, 1 / object_area(c), reference, there);
 }
 
+static float area_pdf(const void *self, uint32_t primitive, const struct sr_point *there)
+{
+    (void)primitive;
+    const struct sr_shape_cylinder *c = self;
+    sr_dvec3 p = sr_affine(c->quadric.to_object, sr_dvec(there->p), 1);
+    double rho = sqrt(p.x * p.x + p.y * p.y);
+    return rho > 0 ? (float)(1 / (object_area(c) * sr_quadric_area_scale(&c->quadric, (sr_dvec3){p.x / rho, p.y / rho, 0}))) : 0;
+}
+
 static void normals(const void *self, uint32_t primitive, sr_vec3 *axis, float *cos_theta)
 {
     (void)self;
@@ -165,5 +174,6 @@ const struct sr_shape_model sr_shape_cylinder = {
     .uv = uv,
     .sample = sample,
     .pdf = pdf,
+    .area_pdf = area_pdf,
     .normals = normals,
 };

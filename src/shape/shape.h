@@ -61,6 +61,8 @@ struct sr_shape_model {
     bool (*sample)(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec2 u, struct sr_shape_sample *s);
     /* Density [1/sr] with which sample(reference) would have drawn the direction wi that meets the primitive at `there`. */
     float (*pdf)(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there);
+    /* Density [1/m^2] with which sample(NULL) would have drawn `there`. NULL: 1 / area. */
+    float (*area_pdf)(const void *self, uint32_t primitive, const struct sr_point *there);
     /* Cone of the outside normals: axis and cos of its half angle (-1: all directions). */
     void (*normals)(const void *self, uint32_t primitive, sr_vec3 *axis, float *cos_theta);
     /* Whether it is a triangle or a parallelogram of one normal, and which. NULL: none is. */

@@ -281,6 +281,14 @@ static float pdf(const void *self, uint32_t primitive, const struct sr_point *re
     return sr_quadric_pdf(&s->quadric, n, 1 / object_area(s), reference, there);
 }
 
+static float area_pdf(const void *self, uint32_t primitive, const struct sr_point *there)
+{
+    (void)primitive;
+    const struct sr_shape_sphere *s = self;
+    sr_dvec3 n = unit(sr_affine(s->quadric.to_object, sr_dvec(there->p), 1));
+    return (float)(1 / (object_area(s) * sr_quadric_area_scale(&s->quadric, n)));
+}
+
 static void normals(const void *self, uint32_t primitive, sr_vec3 *axis, float *cos_theta)
 {
     (void)self;
@@ -311,6 +319,7 @@ const struct sr_shape_model sr_shape_sphere = {
     .uv = uv,
     .sample = sample,
     .pdf = pdf,
+    .area_pdf = area_pdf,
     .normals = normals,
     .round = round_,
 };

@@ -277,6 +277,8 @@ static sr_status build_integrator(struct sr_pbrt_build *b, enum sr_light_choice 
                                                       : SR_LIGHTS_BVH;
     if (status == SR_OK && !is_other)
         sr_pbrt_warn_unused(b, &e, m->params, NULL);
+    if (status == SR_OK && m->prepare)
+        status = m->prepare(self, b->arena, b->error);
     b->result->integrator = (struct sr_integrator){m, self};
     return status;
 }
