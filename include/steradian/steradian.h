@@ -6,6 +6,7 @@
 #include "base.h"
 #include "bsdf.h"
 #include "picture.h"
+#include "quantity.h"
 #include "world.h"
 
 #endif

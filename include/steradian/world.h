@@ -7,6 +7,7 @@
 
 #include "base.h"
 #include "picture.h"
+#include "quantity.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -46,20 +47,10 @@ struct sr_render_settings {
 SR_API sr_status sr_world_render(const struct sr_world *world, const struct sr_render_settings *settings, struct sr_picture **picture,
                                  char *error, size_t error_size);
 
-/* A measured value with its uncertainty (GUM, type A). */
-struct sr_reading {
-    double value;                /* [unit] */
-    double standard_uncertainty; /* [unit] */
-    double degrees_of_freedom;   /* [1] */
-    const char *unit;
-};
-/* Half the width of the interval that covers the truth with that probability (Student): expanded uncertainty. [unit] */
-SR_API double sr_reading_expanded(const struct sr_reading *reading, double level /* [1] such as 0.95 */);
-
 /* Illuminance and irradiance on a surface element at point_m with that normal (any length but zero), by at least 2
- * replicates of samples each. Either reading may be NULL. */
+ * replicates of samples each. Either may be NULL. */
 SR_API sr_status sr_world_irradiance(const struct sr_world *world, const double point_m[3], const double normal[3], uint32_t samples,
-                                     uint32_t replicates, struct sr_reading *E_v /* [lx] */, struct sr_reading *E_e /* [W/m^2] */);
+                                     uint32_t replicates, struct sr_quantity *E_v /* [lx] */, struct sr_quantity *E_e /* [W/m^2] */);
 
 #ifdef __cplusplus
 }

@@ -4,6 +4,7 @@
 
 #include "api/private.h"
 #include "import/import.h"
+#include "quantity/quantity.h"
 
 struct sr_world {
     struct sr_import_result import;
@@ -106,13 +107,8 @@ sr_status sr_world_render(const struct sr_world *world, const struct sr_render_s
     return status;
 }
 
-double sr_reading_expanded(const struct sr_reading *reading, double level)
-{
-    return sr_student_quantile(0.5 + level / 2, reading->degrees_of_freedom) * reading->standard_uncertainty;
-}
-
 sr_status sr_world_irradiance(const struct sr_world *world, const double point_m[3], const double normal[3], uint32_t samples, uint32_t replicates,
-                              struct sr_reading *E_v, struct sr_reading *E_e)
+                              struct sr_quantity *E_v, struct sr_quantity *E_e)
 {
     sr_vec3 p = {(float)point_m[0], (float)point_m[1], (float)point_m[2]}, n = {(float)normal[0], (float)normal[1], (float)normal[2]};
     if (samples < 1 || replicates < 2 || !sr_is_finite(p) || !sr_is_finite(n) || !(sr_length(n) > 0))
@@ -122,8 +118,8 @@ sr_status sr_world_irradiance(const struct sr_world *world, const double point_m
     if (isnan(E.E_v))
         return SR_ERROR_RESOURCE;
     if (E_v)
-        *E_v = (struct sr_reading){E.E_v, E.E_v_error, E.degrees, "lx"};
+        *E_v = (struct sr_quantity){.value = E.E_v, .u = E.E_v_error, .degrees = E.degrees, .unit = sr_unit_of(SR_KIND_FLUX_DENSITY, SR_PHOTOPIC, false)};
     if (E_e)
-        *E_e = (struct sr_reading){E.E_e, E.E_e_error, E.degrees, "W/m^2"};
+        *E_e = (struct sr_quantity){.value = E.E_e, .u = E.E_e_error, .degrees = E.degrees, .unit = sr_unit_of(SR_KIND_FLUX_DENSITY, SR_RADIOMETRIC, false)};
     return SR_OK;
 }

@@ -200,7 +200,7 @@ TEST(senseless_settings_are_refused)
     EXPECT(!picture && strstr(error, "replicate"));
 
     const double point_m[3] = {0, 0, 0}, up[3] = {0, 1, 0}, nowhere[3] = {0, 0, 0};
-    struct sr_reading E;
+    struct sr_quantity E;
     EXPECT_EQUAL_INT(sr_world_irradiance(world, point_m, up, 16, 1, &E, NULL), SR_ERROR_USAGE);
     EXPECT_EQUAL_INT(sr_world_irradiance(world, point_m, up, 0, 2, &E, NULL), SR_ERROR_USAGE);
     EXPECT_EQUAL_INT(sr_world_irradiance(world, point_m, nowhere, 16, 2, &E, NULL), SR_ERROR_USAGE);
@@ -234,7 +234,7 @@ TEST(a_render_that_is_stopped_gives_what_there_is)
 struct rendering {
     const struct sr_world *world;
     struct sr_picture *picture;
-    struct sr_reading E;
+    struct sr_quantity E;
     sr_status status;
 };
 
@@ -262,7 +262,7 @@ TEST(threads_that_render_one_world_at_a_time_get_the_same_bytes)
         EXPECT_EQUAL_INT(r[i].status, SR_OK);
     EXPECT(are_same(r[0].picture, r[2].picture) && are_same(r[1].picture, r[2].picture));
     EXPECT(r[0].E.value == r[2].E.value && r[1].E.value == r[2].E.value);
-    EXPECT(r[1].E.standard_uncertainty == r[2].E.standard_uncertainty);
+    EXPECT(r[1].E.u == r[2].E.u);
     for (int i = 0; i < 3; ++i)
         sr_picture_destroy(r[i].picture);
     sr_world_destroy(world);
@@ -272,13 +272,14 @@ TEST(irradiance_under_a_uniform_sky_is_pi_L)
 {
     struct sr_world *world = load_floor_and_sky();
     const double point_m[3] = {0.5, 0, -0.25}, up[3] = {0, 1, 0};
-    struct sr_reading E_v, E_e;
+    struct sr_quantity E_v, E_e;
     EXPECT_EQUAL_INT(sr_world_irradiance(world, point_m, up, 512, 32, &E_v, &E_e), SR_OK);
-    EXPECT_EQUAL_TEXT(E_v.unit, "lx");
-    EXPECT_EQUAL_TEXT(E_e.unit, "W/m^2");
-    EXPECT_NEAR(E_v.degrees_of_freedom, 31, 0);
-    EXPECT(E_v.standard_uncertainty > 0 && E_v.standard_uncertainty < 0.01 * E_v.value);
-    EXPECT_NEAR(E_v.value, 100 * 3.14159265358979, 6 * E_v.standard_uncertainty);
+    char unit[32];
+    EXPECT_EQUAL_TEXT(sr_unit_text(E_v.unit, unit, sizeof unit), "lx");
+    EXPECT_EQUAL_TEXT(sr_unit_text(E_e.unit, unit, sizeof unit), "W/m^2");
+    EXPECT_NEAR(E_v.degrees, 31, 0);
+    EXPECT(E_v.u > 0 && E_v.u < 0.01 * E_v.value);
+    EXPECT_NEAR(E_v.value, 100 * 3.14159265358979, 6 * E_v.u);
     double efficacy = E_v.value / E_e.value; // of D65, 360 to 830 nm [lm/W]
     EXPECT(efficacy > 150 && efficacy < 300);
     sr_world_destroy(world);
@@ -286,9 +287,9 @@ TEST(irradiance_under_a_uniform_sky_is_pi_L)
 
 TEST(expanded_uncertainty_uses_students_quantiles)
 {
-    const struct sr_reading reading = {.value = 1, .standard_uncertainty = 2, .degrees_of_freedom = 10, .unit = "lx"};
-    EXPECT_NEAR(sr_reading_expanded(&reading, 0.95), 2 * 2.228138852, 1e-7); // tables of Student's t
-    EXPECT_NEAR(sr_reading_expanded(&reading, 0.99), 2 * 3.169272673, 1e-7);
+    const struct sr_quantity reading = {.value = 1, .u = 2, .degrees = 10};
+    EXPECT_NEAR(sr_quantity_expanded(&reading, 0.95), 2 * 2.228138852, 1e-7); // tables of Student's t
+    EXPECT_NEAR(sr_quantity_expanded(&reading, 0.99), 2 * 3.169272673, 1e-7);
 }
 
 TEST(pictures_come_back_from_files_as_they_were)

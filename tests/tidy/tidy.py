@@ -17,7 +17,7 @@ FLOORS = [
     ["base"],
     ["math"],
     ["spectrum", "sample"],
-    ["measured"],
+    ["measured", "quantity"],
     ["texture", "bsdf", "medium", "shape", "sensor", "film", "image", "plot"],
     ["material", "light"],
     ["scene"],

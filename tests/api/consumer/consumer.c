@@ -53,14 +53,16 @@ static void look_at_picture(const struct sr_picture *picture)
 static void measure(const struct sr_world *world)
 {
     const double floor_m[3] = {0.278, 0, 0.2796}, up[3] = {0, 1, 0};
-    struct sr_reading E_v, E_e;
+    struct sr_quantity E_v, E_e;
     expect(sr_world_irradiance(world, floor_m, up, 256, 16, &E_v, &E_e) == SR_OK, "irradiance is measured");
-    expect(strcmp(E_v.unit, "lx") == 0 && strcmp(E_e.unit, "W/m^2") == 0, "readings have units");
+    char text[128];
+    expect(strcmp(sr_unit_text(E_v.unit, text, sizeof text), "lx") == 0, "illuminance has a unit");
+    expect(strcmp(sr_unit_text(E_e.unit, text, sizeof text), "W/m^2") == 0, "irradiance has a unit");
     expect(E_v.value > 0 && E_e.value > 0, "there is light on the floor");
-    expect(E_v.standard_uncertainty > 0 && E_v.standard_uncertainty < 0.1 * E_v.value, "a reading has an uncertainty");
-    expect(E_v.degrees_of_freedom == 15, "16 replicates have 15 degrees of freedom");
-    expect(fabs(sr_reading_expanded(&E_v, 0.95) / E_v.standard_uncertainty - 2.131449546) < 1e-6, "Student's factor of 15 degrees");
-    printf("E_v = %.5g %s +- %.2g %s (95 %%)\n", E_v.value, E_v.unit, sr_reading_expanded(&E_v, 0.95), E_v.unit);
+    expect(E_v.u > 0 && E_v.u < 0.1 * E_v.value, "a reading has an uncertainty");
+    expect(E_v.degrees == 15, "16 replicates have 15 degrees of freedom");
+    expect(fabs(sr_quantity_expanded(&E_v, 0.95) / E_v.u - 2.131449546) < 1e-6, "Student's factor of 15 degrees");
+    puts(sr_quantity_text("E_v", &E_v, text, sizeof text));
 }
 
 int main(int argc, char **argv)
