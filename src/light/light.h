@@ -156,7 +156,7 @@ static inline bool sr_lights_pick(const struct sr_lights *lights, const struct s
 /* The probability with which pick would have chosen it. */
 float sr_lights_pmf(const struct sr_lights *lights, const struct sr_point *x, uint32_t index);
 /* The same in proportion to the area that glows, whoever looks: surfaces alone. Only x->p is read. */
-bool sr_lights_pick_by_area(const struct sr_lights *lights, float u, uint32_t *index, float *pmf);
+bool sr_lights_pick_by_area(const struct sr_lights *lights, const struct sr_point *x, float u, uint32_t *index, float *pmf);
 float sr_lights_pmf_by_area(const struct sr_lights *lights, uint32_t index);
 
 #endif
