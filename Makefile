@@ -6,7 +6,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 OUT ?= out
 SECONDS ?= 60
 
-.PHONY: all render test test-asan test-tsan fuzz bench check format install clean packages
+.PHONY: all render test test-asan test-tsan fuzz mutants bench check format install clean packages
 
 all: packages
 	@cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release >$(BUILD).log 2>&1 || { cat $(BUILD).log; exit 1; }
@@ -42,6 +42,10 @@ fuzz: packages
 	@cmake --build build-fuzz --parallel $(JOBS) --target fuzz_programs >build-fuzz.log 2>&1 || { cat build-fuzz.log; exit 1; }
 	scripts/fuzz build-fuzz/fuzz $(SECONDS)
 
+# wrong versions of the program, each of which a test must catch
+mutants: packages
+	python3 tests/mutants/mutants.py . build-mutants
+
 bench: all
 	$(BUILD)/sr_bench
 
@@ -60,4 +64,4 @@ install: all
 	cmake --install $(BUILD) --prefix $(PREFIX)
 
 clean:
-	rm -rf $(BUILD) build-asan build-tsan build-debug build-fuzz $(OUT) *.log
+	rm -rf $(BUILD) build-asan build-tsan build-debug build-fuzz build-mutants $(OUT) *.log

@@ -107,8 +107,10 @@ static int by_name(const void *a, const void *b)
     return strcmp(((const struct CMUnitTest *)a)->name, ((const struct CMUnitTest *)b)->name);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
+    if (argc > 1) // only the tests of that name; * and ? stand for anything
+        cmocka_set_test_filter(argv[1]);
     qsort(tests, test_count, sizeof tests[0], by_name);
     return _cmocka_run_group_tests("steradian", tests, test_count, NULL, NULL);
 }

@@ -1,0 +1,148 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Deliberately wrong versions of the program, and the test that catches each.
+
+Usage: mutants.py --check ROOT            every edit still applies to exactly one place (fast: a test of the suite)
+       mutants.py ROOT BUILD [NAME ...]   builds ROOT's sources in BUILD with one edit at a time, and sees the tests fail
+
+A mutant is caught when its test, which passes without the edit, fails with it. Exits 1 if one survives."""
+import dataclasses
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import time
+
+
+@dataclasses.dataclass
+class Mutant:
+    name: str  # what is wrong with it
+    file: str  # below src/
+    old: str   # stands in exactly one place
+    new: str
+    test: str  # the folder of tests, which of them, and [rows of the closed forms]
+
+
+MUTANTS = [
+    # transport
+    Mutant("the cosine at the surface is dropped", "integrator/path.c", "sr_spectrum fL = f * l.L * cos_theta_i;",
+           "sr_spectrum fL = f * l.L; (void)cos_theta_i;", "analytic sources* [A2]"),
+    Mutant("0.2 % of the light is lost at each bounce", "integrator/path.c", "beta *= s.f * (sr_abs_cos_theta(s.wi) / s.pdf);",
+           "beta *= s.f * (0.998f * sr_abs_cos_theta(s.wi) / s.pdf);", "analytic enclosures* [D1]"),
+    Mutant("one bounce is missing", "integrator/path.c", "if (bounce == path->max_depth)", "if (bounce + 1 >= path->max_depth)", "analytic enclosures* [D1]"),
+    Mutant("lights that the surface meets are counted in full, and sampled as well", "integrator/path.c",
+           "return density > 0 ? sr_mis_weight(pdf, sr_lights_pmf(lights, from, light) * density) : 1;",
+           "(void)lights, (void)from, (void)pdf, (void)light, (void)density; return 1;", "analytic sources* [B8]"),
+    Mutant("the weights of two strategies do not add up to 1", "integrator/integrator.h", "a + b > 0 ? a / (a + b) : 0;", "a + b > 0 ? a / (a + 1.01f * b) : 0;",
+           "analytic sources* [B8]"),
+    Mutant("who survives the lot does not carry the others' share", "integrator/path.c", "beta *= 1 / survive;", ";", "analytic enclosures* [D1]"),
+    Mutant("shadows end at half of the way to the lamp", "scene/raycast.c", ".d = sr_sub(s->p, o), .time = x->time, .t_max = SHADOW_SHARE}",
+           ".d = sr_sub(s->p, o), .time = x->time, .t_max = SHADOW_SHARE / 2}", "agree scenes_agree*"),
+    Mutant("light from below the horizon is not cut off", "bsdf/bsdf.h", "bool is_reflected = sr_same_hemisphere(wo, wi);", "bool is_reflected = true;",
+           "analytic sources* [B6]"),
+    # lights
+    Mutant("light falls off with the distance, not with its square", "light/point.c", "sr_spd_eval(&m->I, w->lambda) / r2", "sr_spd_eval(&m->I, w->lambda) / r",
+           "unit_light *1000_lm*"),
+    Mutant("a point light fills only half of space", "light/point.c", "m->power / (4 * SR_PI) : 1", "m->power / (2 * SR_PI) : 1", "unit_light *1000_lm*"),
+    Mutant("a spot falls off evenly with the angle, not with its cosine", "light/spot.c",
+           "float t = (cos_theta - m->cos_total) / (m->cos_start - m->cos_total);",
+           "float t = (m->total - acosf(cos_theta)) / (m->total - m->start);", "analytic sources* [A6]"),
+    Mutant("the solid angle of a lamp forgets the lamp's own cosine", "light/area.c", "s->pdf = r2 * r * m->inverse_area / fabsf(height);",
+           "s->pdf = r2 * m->inverse_area;", "unit_light *lamberts_illuminance"),
+    Mutant("the density in a cone is 0.2 % too high", "light/area.c", "s->pdf = SR_INV_PI * 0.5f / rest;", "s->pdf = 1.002f * SR_INV_PI * 0.5f / rest;",
+           "unit_light *sine_squared"),
+    Mutant("the density of an image's sky is not that of its draws", "light/infinite.c", ".pdf = pdf * jacobian / (4 * SR_PI)};",
+           ".pdf = pdf / (4 * SR_PI)};", "unit_light samples_of_an_image*"),
+    Mutant("a tilted distant light gives as much as an upright one", "light/distant.c", "m->scale * (m->illuminance > 0 ? m->illuminance : 1)",
+           "m->scale * (m->illuminance > 0 ? m->illuminance : 1) / fabsf(m->wi.z)", "unit_light *500_lx*"),
+    # matter
+    Mutant("a microfacet's density lacks its Jacobian 1/4", "bsdf/microfacet.h", "*pdf = D / (2 * (zo + so));", "*pdf = 2 * D / (zo + so);", "family bsdf_sampler_follows*"),
+    Mutant("rough glass does not compress radiance", "bsdf/facets_interface.h", "if (mode == SR_RADIANCE && i->transmits)",
+           "if (mode == SR_IMPORTANCE && i->transmits)", "family *adjoint"),
+    Mutant("refraction bends the wrong way", "bsdf/fresnel.c", "float sin2_t = larger(0, (1 - cos_i) * (1 + cos_i)) / (eta * eta);",
+           "float sin2_t = larger(0, (1 - cos_i) * (1 + cos_i)) * (eta * eta);", "unit_bsdf refraction_obeys_snell"),
+    Mutant("Fresnel's reflectance is that of one polarisation", "bsdf/microfacet.h", "return (r_p * r_p + r_s * r_s) * 0.5f;", "return r_s * r_s;",
+           "unit_bsdf fresnel_dielectric*"),
+    Mutant("facets do not hide each other where light leaves", "bsdf/microfacet.h", "return D / (2 * (so * zi + si * zo));", "return D / (4 * so * zi);",
+           "unit_bsdf ggx_reflects*"),
+    # spectra and colour
+    Mutant("linear values are written as if they were sRGB's", "image/image.c",
+           "return v <= 0.0031308f ? v * 12.92f : 1.055f * powf(v, 1 / 2.4f) - 0.055f;", "return v;", "unit_image srgb*"),
+    Mutant("wavelengths claim a density 0.2 % too high", "spectrum/wavelengths.c", "w.pdf = SLOPE / d * grown", "w.pdf = 1.002f * SLOPE / d * grown",
+           "unit_spectrum wavelengths_have*"),
+    Mutant("the observer is one nanometre off", "spectrum/observer.c", "sr_spectrum at = w->lambda - SR_LAMBDA_MIN;",
+           "sr_spectrum at = w->lambda + 1.0f - SR_LAMBDA_MIN;", "unit_spectrum film_estimates*"),
+    # chance and its error
+    Mutant("the standard error is that of one sample", "math/statistics.c", "sqrt(sr_tally_variance(t) / (double)t->n)", "sqrt(sr_tally_variance(t))",
+           "unit_math tally*"),
+    Mutant("the variance divides by n", "math/statistics.c", "t->m2 / (double)(t->n - 1) : 0;", "t->m2 / (double)t->n : 0;", "unit_math tally*"),
+    Mutant("an alias table takes the wrong side of its threshold", "sample/distribution.c", "bool here = fraction < threshold;",
+           "bool here = fraction < 0.99f * threshold;", "unit_sample alias*"),
+    Mutant("a pixel's error bar forgets that it has few blocks", "film/film.c", "((double)(p->blocks - 1) * p->n)", "((double)(4 * p->blocks) * p->n)",
+           "analytic *ordinary_images*"),
+    # cameras
+    Mutant("a lens is looked through more at its middle", "sensor/perspective.c", "sr_vec2 l = sr_warp_disk(u_lens);",
+           "sr_vec2 l = sr_warp_disk(u_lens); l.x *= 0.99f, l.y *= 0.99f;", "analytic cameras* [J5]"),
+    Mutant("the picture is scaled by the wrong sensitivity", "film/film.c", "(double)s->iso / 100;", "(double)s->iso / 125;", "analytic cameras*"),
+    Mutant("an image's pixels are filtered by the cosine to the fourth", "sensor/perspective.c", ".weight = 1,",
+           ".weight = sr_sqr(sr_sqr(sr_length(sr_sub(s->d0, s->origin)) > 0 ? 1 / sr_length(d) : 1)),", "analytic cameras*"),
+]
+
+
+def edit(root, mutant):
+    """The file's text with the mutant's edit, or None."""
+    text = (root / "src" / mutant.file).read_text()
+    return text.replace(mutant.old, mutant.new) if text.count(mutant.old) == 1 else None
+
+
+def check(root):
+    stale = [m for m in MUTANTS if edit(root, m) is None]
+    for m in stale:
+        print(f"src/{m.file}: does not hold exactly once what the mutant \"{m.name}\" changes: {m.old}")
+    print(f"{len(MUTANTS)} mutants, {len(stale)} of them stale")
+    return not stale
+
+
+def passes(build, test):
+    """Builds the test's program and runs it; None: it does not compile."""
+    folder, *rest = test.split()
+    if subprocess.run(["cmake", "--build", build, "--target", f"test_{folder}", *(["steradian_command"] if folder == "command" else [])],
+                      capture_output=True).returncode:
+        return None
+    rows = [word.strip("[]") for word in rest if word.startswith("[")]
+    names = [word for word in rest if not word.startswith("[")]
+    environment = dict(os.environ, **({"STERADIAN_TEST_ROWS": rows[0]} if rows else {}))
+    out = subprocess.run([build / "tests" / f"test_{folder}", *names], capture_output=True, text=True, env=environment)
+    if "0 test(s) run" in out.stderr + out.stdout:
+        return None
+    return out.returncode == 0
+
+
+def hunt(root, build, names):
+    copy = build / "source"
+    shutil.rmtree(copy, ignore_errors=True)
+    shutil.copytree(root, copy, ignore=lambda folder, entries: [e for e in entries if e == ".git" or e == "out" or e.startswith("build")])
+    subprocess.run(["cmake", "-S", copy, "-B", build, "-DCMAKE_BUILD_TYPE=RelWithDebInfo", "-DSTERADIAN_LTO=OFF"], check=True, stdout=subprocess.DEVNULL)
+    caught, hunted = 0, [m for m in MUTANTS if not names or any(n in m.name for n in names)]
+    for test in sorted({m.test for m in hunted}):
+        if passes(build, test) is not True:
+            sys.exit(f"{test}: does not pass without any mutant")
+    for m in hunted:
+        file, begin = copy / "src" / m.file, time.time()
+        text = file.read_text()
+        file.write_text(edit(copy, m))
+        verdict = {None: "does not compile", True: "SURVIVES", False: "caught"}[passes(build, m.test)]
+        file.write_text(text)
+        caught += verdict == "caught"
+        print(f"{verdict:10} {m.name} (src/{m.file}; {m.test}; {time.time() - begin:.0f} s)", flush=True)
+    print(f"{caught} of {len(hunted)} mutants caught")
+    return caught == len(hunted)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) == 3 and sys.argv[1] == "--check":
+        sys.exit(not check(pathlib.Path(sys.argv[2])))
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    sys.exit(not hunt(pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), sys.argv[3:]))
