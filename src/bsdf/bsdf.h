@@ -95,6 +95,7 @@ struct sr_bsdf_model {
     X(microfacet)                                                                                                      \
     X(beckmann_conductor)                                                                                              \
     X(cook_torrance)                                                                                                   \
+    X(he)                                                                                                              \
     X(torrance_sparrow)                                                                                                \
     X(ward)                                                                                                            \
     X(ward_duer)                                                                                                       \

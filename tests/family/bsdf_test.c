@@ -97,6 +97,8 @@ static struct sr_bsdf draw(const struct sr_bsdf_model *model, struct sr_rng *rng
             else if (strncmp(p->name, "exponent", 8) == 0)
                 v = powf(10, (kind < sharp || narrowest < 0.1f ? 4 : 1.7f) *
                                  uniform(rng)); // else broad enough for quadratures
+            else if (strcmp(p->name, "tau") == 0 && kind >= sharp)
+                v = sr_min(v, 4); // waves are diffracted by what varies over that many um: narrower lobes else
             if (strcmp(p->name, "eta") == 0 && kind >= sharp && v > 0.67f && v < 1.5f)
                 v = v < 1 ? 0.67f : 1.5f;
             v = sr_clamp(v, lo, hi);
