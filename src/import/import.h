@@ -8,6 +8,10 @@
 #include "scene/scene.h"
 #include "sensor/sensor.h"
 
+/* What the numbers of emission spectra mean: shapes alone, scaled to luminance 1 as in pbrt; or W m^-2 sr^-1 nm^-1 as they stand
+ * (docs/units.md). */
+enum sr_units { SR_UNITS_OF_SCENE, SR_UNITS_PHOTOMETRIC, SR_UNITS_SI };
+
 /* What the caller wants otherwise than the file says; zero members leave the file's word. */
 struct sr_import_options {
     int threads;             // for reading and building; 0: all processors
@@ -18,6 +22,7 @@ struct sr_import_options {
     bool has_pixel_bounds;   // pixel_bounds: x0 x1 y0 y1
     int32_t pixel_bounds[4]; // [pixel]
     bool quick;              // for a first look: a quarter of the width, height and samples
+    enum sr_units units;     // SR_UNITS_OF_SCENE: what the file says, or photometric
     const char *integrator;  // NULL, or the estimator to use instead of the file's
 };
 
@@ -31,6 +36,7 @@ struct sr_import_result {
     enum sr_sampler_kind sampler;
     uint32_t spp, seed;
     bool jitter_pixel, jitter_lambda;
+    enum sr_units units; // SR_UNITS_PHOTOMETRIC or SR_UNITS_SI
     uint64_t hash; // of all bytes that were read: scene files, meshes, images
     double read_s; // [s] reading and describing, without building
 };

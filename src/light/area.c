@@ -30,16 +30,17 @@ sr_status sr_light_emission_prepare(struct sr_light_emission *e, float total_are
             return error->status;
         mean = sr_light_mean_luminance(&e->texels);
     }
-    double luminance = (double)e->scale;
+    double luminance = (double)e->scale, share = 0;
     if (e->power > 0) {
         double flux = (double)SR_PI * (double)total_area * mean * (e->two_sided ? 2 : 1);
         if (!(flux > 0))
             return sr_fail(error, SR_ERROR_INPUT, "an area light with \"power\" needs an area and an image that is not black");
-        luminance *= (double)e->power / flux;
+        share = (double)e->power / flux;
+        luminance *= share;
     }
     e->emitted = e->L;
     enum sr_colour_space_id space = has_image ? e->texels.space : e->space;
-    if (sr_light_normalise(&e->emitted, space, (float)luminance, error))
+    if (sr_light_set_brightness(&e->emitted, space, e->is_absolute, e->scale, (float)share, error))
         return error->status;
     if (has_image) {
         e->derived_scale = (float)(luminance / sr_colour_space(space)->illuminant_luminous_integral);

@@ -36,7 +36,7 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     if (!sr_is_finite(w) || !(sr_length2(w) > 0))
         return sr_fail(error, SR_ERROR_INPUT, "a distant light needs two different points \"from\" and \"to\"");
     m->wi = sr_normalize(w);
-    if (sr_light_normalise(&m->L, m->common.space, m->scale * (m->illuminance > 0 ? m->illuminance : 1), error))
+    if (sr_light_set_brightness(&m->L, m->common.space, m->common.is_absolute, m->scale, m->illuminance, error))
         return error->status;
     m->luminous = (float)sr_spd_luminous_integral(&m->L);
     m->choice = sr_light_choice_weight(&m->L);

@@ -3,10 +3,12 @@
  *
  *     s'(lambda) = luminance s(lambda) / INTEGRAL s ybar dlambda         so  INTEGRAL s' ybar dlambda = luminance  [cd/m^2]
  *
- * Spectra thus contain 683 lm/W: s' / 683 is in W m^-2 sr^-1 nm^-1. An RGB emission is rgb times a white illuminant, and is
+ * Spectra thus contain 683 lm/W: s' / 683 is in W m^-2 sr^-1 nm^-1. Of scenes in SI units s' = 683 s, and Planck's law as it is. An RGB emission is rgb times a white illuminant, and is
  * normalised by the white alone, as pbrt-v4 does: grey 0.5 is half as bright as white.
  * Limits: a spectrum without luminance (all of it outside 360 to 830 nm) has no such factor and is refused. */
 #include "light/emission.h"
+
+#include "quantity/quantity.h"
 
 static struct sr_spd white_of(enum sr_colour_space_id space)
 {
@@ -29,6 +31,28 @@ sr_status sr_light_normalise(struct sr_spd *s, enum sr_colour_space_id space, fl
         return sr_fail(error, SR_ERROR_INPUT, "the emission spectrum of a light has no luminance, so that it cannot be scaled to the brightness asked for");
     s->scale = 0;
     return SR_OK;
+}
+
+static bool has_own_unit(const struct sr_spd *s)
+{
+    return s->kind != SR_SPD_NONE && s->kind != SR_SPD_ILLUMINANT;
+}
+
+sr_status sr_light_set_brightness(struct sr_spd *s, enum sr_colour_space_id space, bool is_absolute, float scale, float share,
+                                  struct sr_error *error)
+{
+    if (!is_absolute || !has_own_unit(s))
+        return sr_light_normalise(s, space, scale * (share > 0 ? share : 1), error);
+    double factor = (double)scale * (double)SR_KM;
+    if (share > 0) {
+        double given = sr_observer_integral(SR_RADIOMETRIC, s, (double)SR_LAMBDA_MIN, (double)SR_LAMBDA_MAX);
+        if (!(given > 0))
+            return sr_fail(error, SR_ERROR_INPUT, "a light without radiation from 360 to 830 nm cannot be scaled to the power asked for");
+        factor *= (double)share / given;
+    } else if (s->kind == SR_SPD_BLACKBODY)
+        factor *= sr_planck(2.897771955e6 / (double)s->temperature, (double)s->temperature); // its maximum, by Wien's law
+    s->scale = (float)((double)s->scale * factor);
+    return isfinite(s->scale) ? SR_OK : sr_fail(error, SR_ERROR_INPUT, "the emission of a light is not finite");
 }
 
 float sr_light_choice_weight(const struct sr_spd *s)

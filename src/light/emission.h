@@ -9,6 +9,13 @@
  * given is the white of the colour space. Of an RGB emission only the white counts: rgb multiplies it. */
 sr_status sr_light_normalise(struct sr_spd *s, enum sr_colour_space_id space, float luminance, struct sr_error *error);
 
+/* Makes s as bright as a scene says: `scale` times its share of the light's power or illuminance (share; not above 0: not
+ * given). Photometric: share is in lm or lx per what the light needs to turn it into its own unit, and 1 stands where none is
+ * given. Absolute spectra and black bodies: s as it stands is in W m^-2 sr^-1 nm^-1 (or W sr^-1 nm^-1, W m^-2 nm^-1), share in W or
+ * W/m^2 of 360 to 830 nm. RGB and the white where nothing is given are photometric always. */
+sr_status sr_light_set_brightness(struct sr_spd *s, enum sr_colour_space_id space, bool is_absolute, float scale, float share,
+                                  struct sr_error *error);
+
 /* The weight of s where lights are chosen: its luminous integral and a grain of its maximum, so that light that the eye
  * hardly sees is found, too. */
 float sr_light_choice_weight(const struct sr_spd *s);

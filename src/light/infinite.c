@@ -101,8 +101,7 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     const struct sr_texels *t = &m->common.texels;
     set_directions(m);
     if (!is_image(m)) {
-        float luminance = m->scale * (m->illuminance > 0 ? m->illuminance * SR_INV_PI : 1);
-        if (sr_light_normalise(&m->L, m->common.space, luminance, error))
+        if (sr_light_set_brightness(&m->L, m->common.space, m->common.is_absolute, m->scale, m->illuminance * SR_INV_PI, error))
             return error->status;
         m->luminance = (float)sr_spd_luminous_integral(&m->L);
         return SR_OK;

@@ -92,6 +92,7 @@ struct sr_light_emission {
     const char *filename;
     struct sr_texels texels; // image over the surface's (u, v), or width 0
     enum sr_colour_space_id space;
+    bool is_absolute;   // L is in W m^-2 sr^-1 nm^-1 as it stands, power in W
     // derived by sr_light_emission_prepare
     struct sr_spd emitted;   // radiance: L, made to have the luminance that scale and power ask for [.../(m^2 sr nm)]
     float derived_scale;     // the same factor for the image: of an RGB value's illuminant spectrum
@@ -107,11 +108,13 @@ struct sr_light_common {
     struct sr_transform light_to_world; // the transform in force at the directive
     struct sr_texels texels;            // of the image, for models that have a row of kind SR_PARAM_FILE
     enum sr_colour_space_id space;      // in force at the directive: its white shines where no spectrum is given
+    bool is_absolute;                   // emission spectra are in W m^-2 sr^-1 nm^-1 as they stand, their power in W
 };
 /* Where its members sit in a model's self [B]; SIZE_MAX: nowhere (area lights; texels where no image is read). */
 size_t sr_light_transform_offset(const struct sr_light_model *model);
 size_t sr_light_texels_offset(const struct sr_light_model *model);
 size_t sr_light_space_offset(const struct sr_light_model *model);
+size_t sr_light_absolute_offset(const struct sr_light_model *model);
 
 static inline bool sr_light_draw(struct sr_light light, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
 {

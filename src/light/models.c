@@ -28,6 +28,11 @@ size_t sr_light_space_offset(const struct sr_light_model *model)
     return model == &sr_light_area ? SIZE_MAX : offsetof(struct sr_light_common, space);
 }
 
+size_t sr_light_absolute_offset(const struct sr_light_model *model)
+{
+    return model == &sr_light_area ? SIZE_MAX : offsetof(struct sr_light_common, is_absolute);
+}
+
 size_t sr_light_texels_offset(const struct sr_light_model *model)
 {
     for (const struct sr_param *row = model == &sr_light_area ? NULL : model->params; row && row->name; ++row)

@@ -28,8 +28,7 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
 {
     (void)arena;
     struct point *m = self;
-    float luminance = m->scale * (m->power > 0 ? m->power / (4 * SR_PI) : 1);
-    if (sr_light_normalise(&m->I, m->common.space, luminance, error))
+    if (sr_light_set_brightness(&m->I, m->common.space, m->common.is_absolute, m->scale, m->power / (4 * SR_PI), error))
         return error->status;
     m->p = sr_transform_point(&m->common.light_to_world, m->from);
     if (!sr_is_finite(m->p))

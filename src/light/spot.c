@@ -55,8 +55,7 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     float angle = solid_angle(m);
     if (m->power > 0 && !(angle > 0))
         return sr_fail(error, SR_ERROR_INPUT, "a spot light with \"power\" needs a cone wider than %g deg", (double)m->coneangle);
-    float intensity = m->scale * (m->power > 0 ? m->power / angle : 1);
-    if (sr_light_normalise(&m->I, m->common.space, intensity, error))
+    if (sr_light_set_brightness(&m->I, m->common.space, m->common.is_absolute, m->scale, m->power / angle, error))
         return error->status;
     m->luminous = (float)sr_spd_luminous_integral(&m->I);
     m->choice = sr_light_choice_weight(&m->I);

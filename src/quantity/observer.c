@@ -30,9 +30,12 @@ double sr_observer_at(enum sr_system system, double lambda)
 
 double sr_observer_integral(enum sr_system system, const struct sr_spd *s, double lo, double hi)
 {
-    double sum = 0;
-    for (double lambda = lo; lambda <= hi; ++lambda)
-        sum += sr_observer_at(system, lambda) * (double)sr_spd_at(s, (float)lambda);
+    int steps = hi > lo ? (int)ceil(hi - lo) : 1;
+    double step = (hi - lo) / steps, sum = 0;
+    for (int i = 0; i <= steps; ++i) {
+        double lambda = lo + step * i, weight = i == 0 || i == steps ? step / 2 : step;
+        sum += weight * sr_observer_at(system, lambda) * (double)sr_spd_at(s, (float)lambda);
+    }
     return sum;
 }
 

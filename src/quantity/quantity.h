@@ -61,7 +61,7 @@ double sr_observer_at(enum sr_system system, double lambda);
 /* Estimates of X in all systems from what a path carries: X_system = INTEGRAL observer(lambda) X_e(lambda) dlambda, where
  * X = 683 X_e per nm, as everywhere on paths (so that the photopic one is the Y of sr_spectrum_to_xyz). */
 void sr_observe(sr_spectrum X, const struct sr_wavelengths *w, double readings[SR_SYSTEM_COUNT]);
-/* INTEGRAL observer(lambda) s(lambda) dlambda by 1 nm steps from lo to hi [nm]: luminous where s is in W/nm. */
+/* INTEGRAL observer(lambda) s(lambda) dlambda from lo to hi [nm] by trapezoids of 1 nm: luminous where s is in W/nm. */
 double sr_observer_integral(enum sr_system system, const struct sr_spd *s, double lo, double hi);
 
 #endif

@@ -56,7 +56,7 @@ static void append_interval(const struct sr_quantity *q, const char *unit, char 
     if (isinf(q->degrees))
         append(text, size, "∞)");
     else
-        append(text, size, q->degrees == floor(q->degrees) ? "%.0f)" : "%.1f)", q->degrees);
+        append(text, size, q->degrees == floor(q->degrees) || q->degrees >= 100 ? "%.0f)" : "%.1f)", q->degrees);
 }
 
 char *sr_quantity_text(const char *name, const struct sr_quantity *q, char *text, size_t size)

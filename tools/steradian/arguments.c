@@ -111,6 +111,15 @@ bool command_parse_uint(const struct command *command, const char *option, const
     return false;
 }
 
+bool command_parse_units(const struct command *command, const char *text, enum sr_units *units)
+{
+    *units = strcmp(text, "si") == 0 ? SR_UNITS_SI : SR_UNITS_PHOTOMETRIC;
+    if (*units == SR_UNITS_SI || strcmp(text, "photometric") == 0)
+        return true;
+    command_usage(command, "--units %s: photometric or si was expected", text);
+    return false;
+}
+
 bool command_parse_floats(const struct command *command, const char *option, const char *text, int count,
                           double *values)
 {

@@ -5,6 +5,8 @@
 
 #include "base/base.h"
 #include "image/image.h"
+#include "import/import.h"
+#include "quantity/quantity.h"
 
 #include <getopt.h>
 #include <jansson.h>
@@ -42,6 +44,8 @@ bool command_parse_uint(const struct command *command, const char *option, const
                         uint64_t *value);
 bool command_parse_float(const struct command *command, const char *option, const char *text, double lo, double hi,
                          double *value);
+/* "photometric" or "si" */
+bool command_parse_units(const struct command *command, const char *text, enum sr_units *units);
 /* "a,b,c,d" or "a b c d": finite numbers */
 bool command_parse_floats(const struct command *command, const char *option, const char *text, int count,
                           double *values);
@@ -61,6 +65,9 @@ sr_status command_select_channels(const struct sr_image *image, const char *labe
 
 json_t *command_json_number(double value);
 json_t *command_json_quantity(double value, const char *unit); // {"value": 1.5, "unit": "cd/m^2"}
+/* {"unit", "value", "standard_uncertainty", "degrees_of_freedom", "coverage_factor", "expanded_uncertainty", "level": 0.95},
+ * and "upper_bound" where nothing was found */
+json_t *command_json_measured(const struct sr_quantity *q);
 json_t *command_json_text(const char *text);                   // bytes that are no UTF-8 become '?'
 /* Prints it, and releases it; the exit code. */
 int command_print_json(const char *name, json_t *json);

@@ -22,6 +22,8 @@ static const char help[] =
     "      --pixelbounds X0,X1,Y0,Y1  render these pixels\n"
     "      --lambda LO,HI     wavelength range [nm] (default: 360,830)\n"
     "      --integrator NAME  another estimator than the scene's: path, simplepath, randomwalk, ambientocclusion\n"
+    "      --units WORD       what emission spectra mean: photometric (default: only shapes, as pbrt) or si\n"
+    "                         (W m^-2 sr^-1 nm^-1 as they stand); default: the scene's\n"
     "      --sampler KIND     sobol (default) or independent\n"
     "      --exposure EV      exposure of a PNG in stops (default: chosen from the picture)\n"
     "      --aov, --no-aov    auxiliary channels in the EXR (default: with them)\n"

@@ -30,6 +30,7 @@ enum {
     OPT_JSON,
     OPT_STAMP,
     OPT_IRRADIANCE,
+    OPT_UNITS,
 };
 
 static const struct option long_options[] = {
@@ -57,6 +58,7 @@ static const struct option long_options[] = {
     {"sample", required_argument, NULL, OPT_SAMPLE},
     {"replicate", required_argument, NULL, OPT_REPLICATE},
     {"stats", no_argument, NULL, OPT_STATS},
+    {"units", required_argument, NULL, OPT_UNITS},
     {"json", no_argument, NULL, OPT_JSON},
     {"irradiance", required_argument, NULL, OPT_IRRADIANCE},
     {"stamp", no_argument, NULL, OPT_STAMP},
@@ -135,6 +137,8 @@ static bool take_numbers(struct render_arguments *a, int option, const char *nam
         for (int i = 0; i < 4; ++i)
             a->import.pixel_bounds[i] = (int32_t)sr_clamp((float)v[i], -2e9f, 2e9f);
         return true;
+    case OPT_UNITS:
+        return command_parse_units(c, text, &a->import.units);
     case OPT_EXPOSURE:
         a->has_exposure = true;
         return command_parse_float(c, name, text, -100, 100, &a->exposure_EV);

@@ -77,6 +77,7 @@ static void describe(struct sr_image *image, const struct rendering *r, double e
     ATTRIBUTE("steradian.replicates", "%u", r->job->replicates);
     ATTRIBUTE("steradian.integrator", "%s", r->job->integrator.model->name);
     ATTRIBUTE("steradian.lambda", "%g..%g nm", (double)r->job->lambda.lo, (double)r->job->lambda.hi);
+    ATTRIBUTE("steradian.units", "%s", r->scene->units == SR_UNITS_SI ? "si" : "photometric");
     if (!is_complete)
         ATTRIBUTE("steradian.complete", "no");
     if (r->arguments->stamp) {

@@ -7,10 +7,12 @@
 
 enum { METER_SAMPLES = 4096, METER_REPLICATES = 32 };
 
-static struct sr_film_mean mean_luminance(const struct sr_film *film)
+static struct sr_quantity mean_luminance(const struct sr_film *film)
 {
     const struct sr_colour_space *space = sr_colour_space(film->settings.space);
-    return sr_film_region_mean(film, 0, 0, film->width, film->height, space->xyz_from_rgb[1]);
+    struct sr_film_mean L = sr_film_region_mean(film, 0, 0, film->width, film->height, space->xyz_from_rgb[1]);
+    struct sr_unit unit = sr_unit_of(SR_KIND_RADIANCE, SR_PHOTOPIC, false);
+    return (struct sr_quantity){.value = L.mean, .u = L.standard_error, .degrees = L.degrees, .unit = unit};
 }
 
 static double rate(double count, double time_s)
@@ -26,19 +28,18 @@ json_t *render_measure(const struct render_arguments *a, const struct sr_render_
         struct sr_irradiance E =
             sr_render_irradiance(job, (sr_vec3){(float)m[0], (float)m[1], (float)m[2]},
                                  (sr_vec3){(float)m[3], (float)m[4], (float)m[5]}, METER_SAMPLES, METER_REPLICATES);
-        double k = sr_student_quantile(0.975, E.degrees);
+        struct sr_quantity E_v = {.value = E.E_v, .u = E.E_v_error, .degrees = E.degrees};
+        struct sr_quantity E_e = {.value = E.E_e, .u = E.E_e_error, .degrees = E.degrees};
+        E_v.unit = sr_unit_of(SR_KIND_FLUX_DENSITY, SR_PHOTOPIC, false);
+        E_e.unit = sr_unit_of(SR_KIND_FLUX_DENSITY, SR_RADIOMETRIC, false);
+        char seen[128], energy[128];
         if (!a->quiet)
-            fprintf(stderr,
-                    "irradiance at (%g, %g, %g) m, normal (%g, %g, %g): E_v = %.5g lx ± %.2g lx, E_e = %.5g W/m^2 ± "
-                    "%.2g W/m^2 (95 %%, k = %.2f, ν = %g)\n",
-                    m[0], m[1], m[2], m[3], m[4], m[5], E.E_v, k * E.E_v_error, E.E_e, k * E.E_e_error, k, E.degrees);
-        json_array_append_new(
-            list,
-            json_pack("{s:[f,f,f], s:[f,f,f], s:{s:s, s:o, s:o}, s:{s:s, s:o, s:o}, s:o, s:o}", "point_m", m[0], m[1],
-                      m[2], "normal", m[3], m[4], m[5], "E_v", "unit", "lx", "value", command_json_number(E.E_v),
-                      "standard_uncertainty", command_json_number(E.E_v_error), "E_e", "unit", "W/m^2", "value",
-                      command_json_number(E.E_e), "standard_uncertainty", command_json_number(E.E_e_error),
-                      "degrees_of_freedom", command_json_number(E.degrees), "coverage_factor", command_json_number(k)));
+            fprintf(stderr, "irradiance at (%g, %g, %g) m, normal (%g, %g, %g): %s, %s\n", m[0], m[1], m[2], m[3], m[4],
+                    m[5], sr_quantity_text("E_v", &E_v, seen, sizeof seen),
+                    sr_quantity_text("E_e", &E_e, energy, sizeof energy));
+        json_array_append_new(list, json_pack("{s:[f,f,f], s:[f,f,f], s:o, s:o}", "point_m", m[0], m[1], m[2], "normal",
+                                              m[3], m[4], m[5], "E_v", command_json_measured(&E_v), "E_e",
+                                              command_json_measured(&E_e)));
     }
     return list;
 }
@@ -46,16 +47,13 @@ json_t *render_measure(const struct render_arguments *a, const struct sr_render_
 void render_print_summary(const struct rendering *r, const struct sr_film *film, const struct sr_render_report *report)
 {
     struct sr_scene_counts all = sr_scene_count(r->scene->scene), *counts = &all;
-    struct sr_film_mean L = mean_luminance(film);
-    double k = sr_student_quantile(0.975, L.degrees);
-    const char *kind = r->job->replicates ? "" : ", conservative";
-    if (isfinite(L.standard_error))
-        fprintf(stderr, "mean luminance L_v = %.6g cd/m^2 ± %.2g cd/m^2 (95 %%, k = %.2f%s)\n", L.mean,
-                k * L.standard_error, k, kind);
-    else
-        fprintf(stderr, "mean luminance L_v = %.6g cd/m^2 (one block of samples: its error is not known)\n", L.mean);
-    fprintf(stderr, "%u x %u pixels, %u samples each; %.2f s, %.2f M paths/s, %.2f M rays/s\n", film->width,
-            film->height, r->job->spp, report->render_s, 1e-6 * rate((double)report->paths, report->render_s),
+    struct sr_quantity L = mean_luminance(film);
+    char text[128];
+    fprintf(stderr, "mean luminance %s%s\n", sr_quantity_text("L_v", &L, text, sizeof text),
+            r->job->replicates || !isfinite(L.u) ? "" : ", conservative");
+    fprintf(stderr, "%u x %u pixels, %u samples each, %s units; %.2f s, %.2f M paths/s, %.2f M rays/s\n", film->width,
+            film->height, r->job->spp, r->scene->units == SR_UNITS_SI ? "SI" : "photometric",
+            report->render_s, 1e-6 * rate((double)report->paths, report->render_s),
             1e-6 * rate((double)(report->rays + report->shadow_rays), report->render_s));
     if (r->arguments->stats)
         fprintf(stderr,
@@ -76,8 +74,9 @@ void render_print_summary(const struct rendering *r, const struct sr_film *film,
 static json_t *settings_json(const struct rendering *r, const struct sr_film *film)
 {
     const struct sr_render_job *job = r->job;
-    return json_pack("{s:o, s:i, s:i, s:s, s:I, s:I, s:I, s:s, s:s, s:{s:o, s:o, s:s}}", "scene",
-                     command_json_text(r->arguments->scene), "width", (int)film->width, "height", (int)film->height,
+    return json_pack("{s:o, s:s, s:i, s:i, s:s, s:I, s:I, s:I, s:s, s:s, s:{s:o, s:o, s:s}}", "scene",
+                     command_json_text(r->arguments->scene), "units",
+                     r->scene->units == SR_UNITS_SI ? "si" : "photometric", "width", (int)film->width, "height", (int)film->height,
                      "size_unit", "pixel", "spp", (json_int_t)job->spp, "seed", (json_int_t)job->seed, "replicates",
                      (json_int_t)job->replicates, "integrator", job->integrator.model->name, "sampler",
                      job->sampler == SR_SAMPLER_SOBOL ? "sobol" : "independent", "wavelengths", "min",
@@ -85,20 +84,11 @@ static json_t *settings_json(const struct rendering *r, const struct sr_film *fi
                      "unit", "nm");
 }
 
-static json_t *luminance_json(const struct sr_film *film)
-{
-    struct sr_film_mean L = mean_luminance(film);
-    double k = sr_student_quantile(0.975, L.degrees);
-    return json_pack("{s:s, s:o, s:o, s:o, s:o, s:o, s:f}", "unit", "cd/m^2", "value", command_json_number(L.mean),
-                     "standard_uncertainty", command_json_number(L.standard_error), "degrees_of_freedom",
-                     command_json_number(L.degrees), "coverage_factor", command_json_number(k), "expanded_uncertainty",
-                     command_json_number(k * L.standard_error), "level", 0.95);
-}
-
 int render_print_json(const struct rendering *r, const struct sr_film *film, const struct sr_render_report *report,
                       json_t *meters)
 {
     struct sr_scene_counts counts = sr_scene_count(r->scene->scene);
+    struct sr_quantity L = mean_luminance(film);
     char hash[17];
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)r->scene->hash);
     json_t *outputs = json_array();
@@ -108,7 +98,7 @@ int render_print_json(const struct rendering *r, const struct sr_film *film, con
         "{s:s, s:s, s:o, s:b, s:o, s:o, s:{s:f, s:f, s:f, s:f, s:f, s:I}, s:{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, "
         "s:I, s:I}, s:o}",
         "version", SR_VERSION, "scene_hash", hash, "outputs", outputs, "complete", report->is_complete, "settings",
-        settings_json(r, film), "mean_luminance", luminance_json(film), "time", "read_s", r->scene->read_s, "build_s",
+        settings_json(r, film), "mean_luminance", command_json_measured(&L), "time", "read_s", r->scene->read_s, "build_s",
         counts.build_s, "render_s", report->render_s, "paths_per_s", rate((double)report->paths, report->render_s),
         "rays_per_s", rate((double)(report->rays + report->shadow_rays), report->render_s), "peak_memory_B",
         (json_int_t)sr_peak_memory_B(), "counts", "triangles", (json_int_t)counts.triangles, "patches",

@@ -51,6 +51,7 @@ struct sr_pbrt_build {
     struct sr_pbrt_bound_texture *textures;   // one for each of the description
     struct sr_pbrt_built_material *materials; // first those of Material directives, then the named ones
     bool has_told_normalisation;              // that emission spectra are scaled to luminance 1
+    bool has_warned_units;                    // that a spectrum may be meant otherwise
 };
 
 /* What the values of an entity are for, where its table alone does not say it. */

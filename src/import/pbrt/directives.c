@@ -68,6 +68,7 @@ static sr_status read_option(struct sr_pbrt_parser *p)
                                         "pixelstats",
                                         "rendercoordsys",
                                         "seed",
+                                        "units",
                                         "wavefront"};
     struct sr_pbrt_params params;
     sr_status status = sr_pbrt_params_read(p->d, p->lexer, &p->scratch, p->state.space, no_defaults, &params, p->error);

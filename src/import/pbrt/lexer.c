@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Words, strings and brackets of a pbrt file in memory; comments run from # to the end of the line. */
+/* Words, strings and brackets of a pbrt file in memory; comments run from # to the end of the line. "#@" and a blank begin no
+ * comment but are blanks themselves: what follows are directives that are ours alone, so that other readers skip them. */
 #include "import/pbrt/lexer.h"
 
 #include "import/number.h"
@@ -36,6 +37,8 @@ static inline void skip_space(struct sr_pbrt_lexer *l)
         if (c == '\n') {
             ++l->line;
             l->line_start = p + 1;
+        } else if (c == '#' && p[1] == '@' && (p[2] == ' ' || p[2] == '\t')) {
+            ++p;
         } else if (c == '#') {
             const char *newline = memchr(p, '\n', (size_t)(l->end - p));
             p = newline ? newline - 1 : l->end - 1;

@@ -4,12 +4,39 @@
 
 #include <string.h>
 
-/* Emission that is an absolute spectrum loses its scale in pbrt; images must match, so it does here. */
+/* Above this, samples look like W m^-2 sr^-1 nm^-1: relative spectra end at 1 or near 100. */
+static const float relative_most = 250;
+
+static float largest_sample(const struct sr_pbrt_param *p)
+{
+    float largest = 0;
+    for (uint32_t i = 1; p->floats && i < p->count; i += 2)
+        largest = sr_max(largest, p->floats[i]);
+    return largest;
+}
+
+/* What an emission spectrum's numbers mean, where that may surprise: once for a scene. */
 void sr_pbrt_tell_normalisation(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e)
 {
-    for (uint32_t i = 0; i < e->params.count && !b->has_told_normalisation; ++i) {
-        enum sr_pbrt_type type = e->params.items[i].type;
-        if (type == SR_PBRT_SPECTRUM || type == SR_PBRT_BLACKBODY) {
+    bool has_total = sr_pbrt_find(&e->params, "power") || sr_pbrt_find(&e->params, "illuminance");
+    bool is_si = b->result->units == SR_UNITS_SI;
+    for (uint32_t i = 0; i < e->params.count; ++i) {
+        const struct sr_pbrt_param *p = &e->params.items[i];
+        if (p->type != SR_PBRT_SPECTRUM && p->type != SR_PBRT_BLACKBODY)
+            continue;
+        bool is_spectrum = p->type == SR_PBRT_SPECTRUM && !has_total;
+        if (is_si && is_spectrum && p->is_text && sr_spd_named(p->strings[0]).kind != SR_SPD_NONE && !b->has_warned_units) {
+            b->has_warned_units = true;
+            sr_pbrt_warn(b->d, p->where, "\"%s\" is a relative spectrum, and its numbers count as W m^-2 sr^-1 nm^-1 here: "
+                         "\"power\", \"illuminance\" or \"scale\" make it as bright as wanted", p->strings[0]);
+        }
+        if (!is_si && is_spectrum && !p->is_text && largest_sample(p) > relative_most && !b->has_warned_units) {
+            b->has_warned_units = true;
+            sr_pbrt_warn(b->d, p->where, "this spectrum looks absolute (up to %g), but only its shape counts, as in pbrt: "
+                         "#@ Option \"string units\" \"si\" or --units si take its numbers as W m^-2 sr^-1 nm^-1",
+                         (double)largest_sample(p));
+        }
+        if (!is_si && !b->has_told_normalisation) {
             b->has_told_normalisation = true;
             sr_log(b->log, SR_INFO,
                    "%s:%d: emission given as a spectrum is scaled to luminance 1 before \"scale\" or \"power\", as "
@@ -53,6 +80,8 @@ static sr_status add_light(struct sr_pbrt_build *b, const struct sr_pbrt_light *
         *(struct sr_transform *)(self + at) = sr_pbrt_transform_of(b, e->transform)->start;
     if ((at = sr_light_space_offset(m)) != SIZE_MAX)
         *(enum sr_colour_space_id *)(self + at) = e->space;
+    if ((at = sr_light_absolute_offset(m)) != SIZE_MAX)
+        *(bool *)(self + at) = b->result->units == SR_UNITS_SI;
     if (status == SR_OK && (at = sr_light_texels_offset(m)) != SIZE_MAX)
         status = read_image(b, e, (struct sr_texels *)(self + at));
     if (status != SR_OK)
@@ -87,6 +116,7 @@ sr_status sr_pbrt_emission(struct sr_pbrt_build *b, uint32_t area_light1, float 
     sr_status status =
         sr_pbrt_bind(b, sr_light_emission_params, e, (struct sr_pbrt_use){SR_PARAM_ALBEDO, false}, emission);
     emission->space = e->space;
+    emission->is_absolute = b->result->units == SR_UNITS_SI;
     if (status == SR_OK)
         status = read_image(b, e, &emission->texels);
     if (status != SR_OK)

@@ -290,6 +290,7 @@ static sr_status build_options(struct sr_pbrt_build *b)
     static const char *const harmless[] = {"rendercoordsys",    "wavefront",       "pixelstats",
                                            "msereferenceimage", "msereferenceout", "displacementedgescale"};
     b->result->jitter_pixel = b->result->jitter_lambda = true;
+    b->result->units = b->options->units;
     for (size_t i = 0; i < b->d->options.count; ++i) {
         const struct sr_pbrt_option *o = SR_PBRT_AT(b->d->options, struct sr_pbrt_option, i);
         bool is_on = o->value.type == SR_PBRT_BOOL && o->value.count == 1 && o->value.ints[0];
@@ -307,6 +308,14 @@ static sr_status build_options(struct sr_pbrt_build *b)
                                     "Option \"seed\": expected one integer");
             if (!sr_pbrt_find(&b->d->sampler.params, "seed")) // the sampler's own word counts more
                 b->result->seed = (uint32_t)o->value.ints[0];
+        } else if (strcmp(o->name, "units") == 0) {
+            const char *word = o->value.type == SR_PBRT_STRING_TYPE && o->value.count == 1 ? o->value.strings[0] : "";
+            bool is_si = strcmp(word, "si") == 0;
+            if (!is_si && strcmp(word, "photometric") != 0)
+                return sr_pbrt_fail(b->d, o->value.where, b->error, SR_ERROR_INPUT,
+                                    "Option \"units\": expected \"photometric\" or \"si\"");
+            if (b->options->units == SR_UNITS_OF_SCENE)
+                b->result->units = is_si ? SR_UNITS_SI : SR_UNITS_PHOTOMETRIC;
         } else {
             bool is_harmless = false;
             for (size_t k = 0; k < sizeof harmless / sizeof *harmless; ++k)
@@ -316,6 +325,8 @@ static sr_status build_options(struct sr_pbrt_build *b)
                              o->value.name);
         }
     }
+    if (b->result->units == SR_UNITS_OF_SCENE)
+        b->result->units = SR_UNITS_PHOTOMETRIC;
     return SR_OK;
 }
 
