@@ -43,6 +43,7 @@ struct sr_light_model {
     const struct sr_param *params;
     size_t size;
     bool is_infinite, is_delta;
+    bool reads_own_file; // its row of kind SR_PARAM_FILE names no image; prepare reads it
     /* Normalises (power, illuminance, scale), checks. For shapes' lights the shape is already in self. */
     sr_status (*prepare)(void *self, struct sr_arena *arena, struct sr_error *error);
     /* Once the scene's extent is known (infinite lights); may be NULL. */

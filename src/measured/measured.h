@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* Scattering as somebody measured it: files of BSDF data, read, judged, evaluated, sampled and written.
+/* Scattering as somebody measured it: files of BSDF data, read, judged, evaluated, sampled and written. (Luminaires:
+ * photometry.h.)
  *
  * Directions are those of the room bsdf/: local, normal +z, wo toward the viewer, wi toward the light, both pointing away
  * from the surface. f is in sr^-1, without the cosine, whatever the file keeps. */
 #ifndef SR_MEASURED_MEASURED_H
 #define SR_MEASURED_MEASURED_H
 
+#include "measured/photometry.h"
 #include "sample/sample.h"
 #include "spectrum/spectrum.h"
 

@@ -111,6 +111,7 @@ struct sr_plot_panel {
     const struct sr_plot_mark *marks;
     uint32_t curve_count, mark_count;
     bool has_no_legend;
+    bool points_down; // a polar panel: a whole disc, its angles from the bottom, positive ones to the right, as lamps hang
 
     const double *values;  // [unit of z] of a map: rows * columns, the lowest y first; NaN: no value
     const uint8_t *pixels; // [1] of a picture: sRGB, three bytes each, the top row first; of a map: in place of values

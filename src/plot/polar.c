@@ -11,6 +11,7 @@ struct disc {
     double cx, cy, radius; // [px]
     double from, to;       // [°]
     bool is_whole;
+    double up;          // [1] 1: angles run from the top, -1: from the bottom
     double left, right; // [px] of the cell
 };
 
@@ -24,7 +25,7 @@ static double across(const struct disc *d, double angle_deg, double r)
 
 static double height(const struct disc *d, double angle_deg, double r)
 {
-    return d->cy - r * cos(angle_deg * pi / 180);
+    return d->cy - d->up * r * cos(angle_deg * pi / 180);
 }
 
 static sr_status settle(struct sr_plot_axis *radius, bool *is_whole, const struct sr_plot_panel *panel,
@@ -64,7 +65,7 @@ static void text_beyond(struct plot_canvas *canvas, const struct disc *d, double
                         struct plot_type type, const char *text)
 {
     type.across = 0.5 - 0.5 * sin(angle_deg * pi / 180);
-    type.along_height = 0.5 - 0.5 * cos(angle_deg * pi / 180);
+    type.along_height = 0.5 - 0.5 * d->up * cos(angle_deg * pi / 180);
     double width = sr_canvas_text_width(canvas, &type, text), x = across(d, angle_deg, d->radius + beyond);
     x = fmin(fmax(x, d->left + type.across * width), d->right - (1 - type.across) * width);
     sr_canvas_text(canvas, x, height(d, angle_deg, d->radius + beyond), &type, text);
@@ -85,7 +86,7 @@ static void draw_angles(struct plot_canvas *canvas, const struct disc *d, const 
         sr_canvas_colour(canvas, PLOT_GRID);
         sr_canvas_line(canvas, d->cx, d->cy, across(d, deg, d->radius), height(d, deg, d->radius));
         char text[32];
-        snprintf(text, sizeof text, "%s%d°", deg < 0 ? "−" : "", abs(deg));
+        snprintf(text, sizeof text, "%s%d°", deg < 0 && d->up > 0 ? "−" : "", abs(deg));
         if (!is_near_mark(panel, deg, 9))
             text_beyond(canvas, d, deg, 5, (struct plot_type){0}, text);
     }
@@ -136,7 +137,8 @@ static void draw_radii(struct plot_canvas *canvas, const struct disc *d, const s
     sr_canvas_colour(canvas, PLOT_SOFT_INK);
     cairo_set_line_width(canvas->cr, 1);
     arc(canvas, d, d->radius);
-    sr_canvas_line(canvas, d->cx - d->radius, d->cy, d->cx + d->radius, d->cy);
+    if (!d->is_whole)
+        sr_canvas_line(canvas, d->cx - d->radius, d->cy, d->cx + d->radius, d->cy);
 }
 
 static void draw_curve(struct plot_canvas *canvas, const struct disc *d, const struct sr_plot_axis *radius,
@@ -164,9 +166,10 @@ sr_status sr_plot_draw_polar(struct plot_canvas *canvas, struct plot_box cell, c
                              struct sr_error *error)
 {
     struct sr_plot_axis radius = panel->y;
-    struct disc d = {.from = -90, .to = 90, .left = cell.x0, .right = cell.x1};
+    struct disc d = {.from = -90, .to = 90, .up = panel->points_down ? -1 : 1, .left = cell.x0, .right = cell.x1};
     if (settle(&radius, &d.is_whole, panel, error) != SR_OK)
         return error->status;
+    d.is_whole |= panel->points_down;
     if (d.is_whole) {
         d.from = -180;
         d.to = 180;

@@ -31,3 +31,17 @@ foreach(format merl rgl rgl_rgb polarised klems tree cornell astm abg table clou
   add_dependencies(fuzz_programs fuzz_${format})
   math(EXPR number "${number} + 1")
 endforeach()
+
+set(number 0)
+foreach(format ies ies_b ldt) # in the order of fuzz_photometry.c
+  add_executable(fuzz_${format} EXCLUDE_FROM_ALL tests/fuzz/fuzz_photometry.c)
+  target_link_libraries(fuzz_${format} PRIVATE steradian_fuzzed)
+  target_compile_definitions(fuzz_${format} PRIVATE FUZZ_SEED=${number})
+  if(STERADIAN_HAS_LIBFUZZER)
+    target_compile_definitions(fuzz_${format} PRIVATE FUZZ_LIBFUZZER)
+    target_link_options(fuzz_${format} PRIVATE -fsanitize=fuzzer)
+  endif()
+  set_target_properties(fuzz_${format} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/fuzz)
+  add_dependencies(fuzz_programs fuzz_${format})
+  math(EXPR number "${number} + 1")
+endforeach()

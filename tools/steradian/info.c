@@ -1,26 +1,30 @@
 /* SPDX-License-Identifier: MIT */
-/* steradian info: what is in a file, without rendering it: pictures here, scenes in info_scene.c. */
+/* steradian info: what is in a file, without rendering it: pictures here, scenes in info_scene.c, luminaires in
+ * info_luminaire.c. */
 #include "info.h"
 
 #include <stdio.h>
 #include <string.h>
 
 static const char help[] =
-    "Usage: steradian info FILE [--json]\n"
+    "Usage: steradian info FILE [--json] [--plot FIGURE]\n"
     "\n"
     "Tells what a picture (EXR, PNG, JPEG, PFM, HDR, TGA) or a scene (.pbrt, .pbrt.gz, '-': a scene from standard\n"
     "input) contains, without rendering: sizes, channels with their units, attributes; sensor, film, lights, shapes,\n"
-    "bounds, memory.\n"
+    "bounds, memory. Of a luminaire (.ies, .ldt): flux, peak, beam and field angles, efficacy, size, its words.\n"
     "\n"
     "      --json             the same as JSON on standard output\n"
+    "      --plot FIGURE      a luminaire's intensity over directions as a polar diagram, .svg or .png\n"
     "  -q, --quiet            no notes about the scene; warnings and errors stay\n"
     "\n"
     "Examples:\n"
     "  steradian info scenes/cornell-box.pbrt\n"
-    "  steradian info cornell.exr --json\n";
+    "  steradian info cornell.exr --json\n"
+    "  steradian info lamp.ies --plot lamp.svg\n";
 
 static const struct option long_options[] = {
     {"json", no_argument, NULL, 'j'},
+    {"plot", required_argument, NULL, 'p'},
     {"quiet", no_argument, NULL, 'q'},
     {NULL, 0, NULL, 0},
 };
@@ -118,13 +122,16 @@ static int run(int argc, char **argv)
 {
     static const char *const scenes[] = {".pbrt", ".pbrt.gz", NULL};
     static const char *const later[] = {".gltf", ".glb", ".obj", ".usd", ".usda", ".usdc", ".usdz", ".blend", ".fbx",
-                                        ".dae",  ".xml", ".abc", ".stl", ".rad",  ".ies",  ".ldt",  ".mtlx",  NULL};
+                                        ".dae",  ".xml", ".abc", ".stl", ".rad",  ".mtlx", NULL};
     struct info_arguments a = {0};
     int option, index = 0;
     while ((option = command_next_option(argc, argv, ":q", long_options, &index)) != -1)
         switch (option) {
         case 'j':
             a.json = true;
+            break;
+        case 'p':
+            a.plot = optarg;
             break;
         case 'q':
             a.quiet = true;
@@ -139,13 +146,17 @@ static int run(int argc, char **argv)
     a.path = argv[optind];
     if (strcmp(a.path, "-") == 0 || has_ending_of(a.path, scenes))
         return info_scene(&a);
+    if (sr_path_has_ending(a.path, ".ies") || sr_path_has_ending(a.path, ".ldt"))
+        return info_luminaire(&a);
 
+    if (a.plot)
+        return command_usage(&command_info, "--plot is for luminaires, .ies or .ldt");
     struct sr_error error = {0};
     struct sr_image *image = NULL;
     if (sr_file_exists(a.path) && has_ending_of(a.path, later))
         sr_fail(&error, SR_ERROR_INPUT,
-                "%s: this kind of file is not supported yet; scenes are .pbrt or .pbrt.gz, pictures EXR, PNG, JPEG, "
-                "PFM, HDR, TGA",
+                "%s: this kind of file is not supported yet; scenes are .pbrt or .pbrt.gz, luminaires .ies or .ldt, pictures EXR, "
+                "PNG, JPEG, PFM, HDR, TGA",
                 a.path);
     else if (sr_file_exists(a.path) && (sr_path_has_ending(a.path, ".ply") || sr_path_has_ending(a.path, ".ply.gz")))
         sr_fail(&error, SR_ERROR_INPUT,
@@ -158,10 +169,10 @@ static int run(int argc, char **argv)
     } else if (strstr(error.text, "is no image that can be read")) {
         error = (struct sr_error){0};
         sr_fail(&error, SR_ERROR_INPUT,
-                "%s: is neither a picture (EXR, PNG, JPEG, PFM, HDR, TGA) nor named like a scene (.pbrt, .pbrt.gz)",
+                "%s: is neither a picture (EXR, PNG, JPEG, PFM, HDR, TGA) nor named like a scene (.pbrt, .pbrt.gz) or a luminaire (.ies, .ldt)",
                 a.path);
     }
     return command_fail("info", &error);
 }
 
-const struct command command_info = {"info", "what is in a picture or a scene", help, run};
+const struct command command_info = {"info", "what is in a picture, a scene or a luminaire", help, run};

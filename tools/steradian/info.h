@@ -7,10 +7,13 @@
 
 struct info_arguments {
     const char *path;
+    const char *plot; // NULL, or where a luminaire's figure goes
     bool json, quiet;
 };
 
 /* Reads a scene and tells what it contains; the exit code. */
 int info_scene(const struct info_arguments *arguments);
+/* The same for a luminaire, IES or EULUMDAT. */
+int info_luminaire(const struct info_arguments *arguments);
 
 #endif

@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: MIT */
+/* A point that shines as a luminaire was measured to: IES LM-63 or EULUMDAT.
+ *
+ *     I(d) = scale I_file(C, gamma) s(lambda),   INTEGRAL s ybar dlambda = 1          [cd]
+ *     Phi  = scale INTEGRAL I_file dw, or with `power`: Phi = scale * power           [lm]
+ *
+ * The luminaire hangs in its own space: gamma 0 along -z, C 0 along +x, C 90 along +y; scenes whose up is y turn it by
+ * Rotate -90 1 0 0. Limits: far field: without extent, so that receivers nearer than about five times the luminaire's size get
+ * another amount than from the real one; one colour in all directions; a transform that is no similarity bends the
+ * distribution. */
+#include "light/emission.h"
+#include "measured/measured.h"
+
+struct ies {
+    struct sr_light_common common;
+    struct sr_spd I;
+    float scale, power; // [1] [lm]
+    const char *filename;
+    sr_vec3 from;
+    const struct sr_photometry *photometry; // derived
+    sr_vec3 p;                              // [m]
+    sr_vec3 axis;                           // [1] local -z
+    float factor;                           // [1] of the file's candelas, with the mean brightness of the spectrum
+    float flux, choice;                     // [lm], [cd] of the peak
+    float cos_reach;                        // of the cone around the axis beyond which there is no light
+};
+
+static const struct sr_param params[] = {
+    {SR_PARAM_FILE, "filename", "1", 0, 0, 0, offsetof(struct ies, filename), "IES LM-63 or EULUMDAT file"},
+    {SR_PARAM_ILLUMINANT, "I", "cd", 0, INFINITY, NAN, offsetof(struct ies, I), "spectrum; only its shape counts, rgb its brightness, too"},
+    {SR_PARAM_FLOAT, "scale", "1", 0, INFINITY, 1, offsetof(struct ies, scale), "factor"},
+    {SR_PARAM_FLOAT, "power", "lm", -INFINITY, INFINITY, NAN, offsetof(struct ies, power), "luminous flux of the whole light instead of the file's, if above 0"},
+    {SR_PARAM_POINT3, "from", "m", -INFINITY, INFINITY, 0, offsetof(struct ies, from), "where it is"},
+    {.name = NULL},
+};
+
+static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *error)
+{
+    struct ies *m = self;
+    if (!m->filename || !m->filename[0])
+        return sr_fail(error, SR_ERROR_INPUT, "an ies light needs the parameter \"filename\"");
+    if (sr_photometry_read(m->filename, arena, &m->photometry, error) != SR_OK)
+        return error->status;
+    const struct sr_photometry *p = m->photometry;
+    double flux = sr_photometry_flux(p, 0, 180), peak = 0;
+    float reach = 0;
+    for (size_t i = 0; i < (size_t)p->c_count * p->gamma_count; ++i) {
+        size_t row = i % p->gamma_count;
+        peak = fmax(peak, (double)p->candela[i]);
+        if (p->candela[i] > 0) // linear down to the next angle
+            reach = sr_max(reach, p->gamma[row + 1 < p->gamma_count ? row + 1 : row]);
+    }
+    m->cos_reach = cosf(sr_min(sr_radians(reach) + 1e-3f, SR_PI));
+    m->p = sr_transform_point(&m->common.light_to_world, m->from);
+    m->axis = sr_normalize(sr_transform_vector(&m->common.light_to_world, (sr_vec3){0, 0, -1}));
+    if (!sr_is_finite(m->p) || !sr_is_finite(m->axis))
+        return sr_fail(error, SR_ERROR_INPUT, "the place of an ies light is not finite");
+    if (sr_light_normalise(&m->I, m->common.space, 1, error))
+        return error->status;
+    m->factor = (float)((double)m->scale * (m->power > 0 ? (double)m->power / flux : 1));
+    double luminous = sr_spd_luminous_integral(&m->I);
+    m->flux = (float)(luminous * (double)m->factor * flux);
+    m->choice = (float)((double)(m->factor * sr_light_choice_weight(&m->I)) * peak);
+    return isfinite(m->factor) && isfinite(m->flux) ? SR_OK : sr_fail(error, SR_ERROR_INPUT, "%s: the emission is not finite", m->filename);
+}
+
+/* toward w in the world [cd] of the white */
+static float intensity(const struct ies *m, sr_vec3 w)
+{
+    sr_vec3 d = sr_inverse_vector(&m->common.light_to_world, w);
+    return m->factor * (float)sr_photometry_intensity_along(m->photometry, d);
+}
+
+static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
+{
+    (void)u;
+    const struct ies *m = self;
+    sr_vec3 d = sr_sub(m->p, reference->p);
+    float r2 = sr_length2(d), r = sqrtf(r2);
+    if (!(r2 > 0))
+        return false;
+    sr_vec3 wi = sr_scale(1 / r, d);
+    float I = intensity(m, sr_neg(wi));
+    if (!(I > 0))
+        return false;
+    *s = (struct sr_light_sample){.L = sr_spd_eval(&m->I, w->lambda) * (I / r2), .wi = wi, .distance = r, .p = m->p, .pdf = 1, .is_delta = true};
+    return true;
+}
+
+static float power(const void *self)
+{
+    return ((const struct ies *)self)->flux;
+}
+
+static bool bounds(const void *self, struct sr_light_bounds *b)
+{
+    const struct ies *m = self;
+    *b = (struct sr_light_bounds){.box = {m->p, m->p}, .axis = m->axis, .cos_theta_o = m->cos_reach, .cos_theta_e = 1, .power = 4 * SR_PI * m->choice};
+    return true;
+}
+
+const struct sr_light_model sr_light_ies = {
+    .name = "ies", .params = params, .size = sizeof(struct ies), .is_delta = true, .reads_own_file = true, .prepare = prepare,
+    .sample = sample, .pdf = sr_light_delta_pdf, .Le = sr_light_delta_Le, .bounds = bounds, .power = power,
+};
