@@ -42,6 +42,9 @@ void sr_film_destroy(struct sr_film *film)
 {
     if (!film)
         return;
+    if (film->splats)
+        sr_free(film->splats->words);
+    sr_free(film->splats);
     sr_free(film->pixels);
     sr_free(film->aov);
     sr_free(film);
@@ -132,7 +135,7 @@ void sr_film_pixel_mean(const struct sr_film *film, uint32_t x, uint32_t y, doub
 {
     const struct sr_film_pixel *p = &film->pixels[(size_t)y * film->width + x];
     for (int c = 0; c < 3; ++c)
-        mean[c] = p->n ? p->sum[c] / p->n : 0;
+        mean[c] = (p->n ? p->sum[c] / p->n : 0) + sr_film_splat_mean(film, (size_t)y * film->width + x, c);
 }
 
 /* Variance of the mean of w . rgb, or of one channel c. NaN with fewer than two blocks. */
@@ -144,18 +147,25 @@ static double mean_variance(const struct sr_film_pixel *p, int c)
     return fmax(0, spread) / ((double)(p->blocks - 1) * p->n);
 }
 
+static double pixel_variance(const struct sr_film *film, uint32_t x, uint32_t y, int c)
+{
+    double w[3] = {0, 0, 0};
+    w[c] = 1;
+    return mean_variance(&film->pixels[(size_t)y * film->width + x], c) + sr_film_splat_variance(film, x, y, x + 1, y + 1, w);
+}
+
 enum { POOL = 2 }; // pixels to each side: 5 x 5
 
 void sr_film_pixel_error(const struct sr_film *film, uint32_t x, uint32_t y, bool pooled, double standard_error[3])
 {
     int reach = pooled ? POOL : 0;
     for (int c = 0; c < 3; ++c) {
-        double sum = 0, count = 0, own = mean_variance(&film->pixels[(size_t)y * film->width + x], c);
+        double sum = 0, count = 0, own = pixel_variance(film, x, y, c);
         for (int64_t j = (int64_t)y - reach; j <= (int64_t)y + reach; ++j)
             for (int64_t i = (int64_t)x - reach; i <= (int64_t)x + reach; ++i) {
                 if (i < 0 || j < 0 || i >= film->width || j >= film->height)
                     continue;
-                double v = mean_variance(&film->pixels[(size_t)j * film->width + (size_t)i], c);
+                double v = pixel_variance(film, (uint32_t)i, (uint32_t)j, c);
                 if (isfinite(v)) {
                     sum += v;
                     count += 1;
@@ -176,7 +186,7 @@ struct sr_film_mean sr_film_region_mean(const struct sr_film *film, uint32_t x0,
             const struct sr_film_pixel *p = &film->pixels[(size_t)y * film->width + x];
             double se = 0;
             for (int c = 0; c < 3; ++c) {
-                m.mean += p->n ? w[c] * p->sum[c] / p->n : 0;
+                m.mean += (p->n ? w[c] * p->sum[c] / p->n : 0) + w[c] * sr_film_splat_mean(film, (size_t)y * film->width + x, c);
                 // the channels of a sample go together: standard deviations add, which is the upper bound
                 double v = mean_variance(p, c);
                 se += fabs(w[c]) * sqrt(isfinite(v) ? v : 0);
@@ -185,6 +195,11 @@ struct sr_film_mean sr_film_region_mean(const struct sr_film *film, uint32_t x0,
             fourth += se * se * se * se;
             blocks = p->blocks > blocks ? p->blocks : blocks;
         }
+    if (film->splats) {
+        double splats = sr_film_splat_variance(film, x0, y0, x1, y1, w);
+        variance += splats;
+        fourth += splats * splats * (blocks - 1) / (film->splats->groups - 1);
+    }
     m.mean /= count;
     m.standard_error = blocks >= 2 ? sqrt(variance) / count : NAN;
     // Welch and Satterthwaite: many pixels of few blocks each have many degrees of freedom together

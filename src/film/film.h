@@ -35,6 +35,7 @@ struct sr_filter {
     sr_vec2 radius;                    // [pixel]
     const struct sr_filter_axis *axes; // x and y; NULL: uniform
     float weight;                      // [1] integral |f| / integral f, as drawn
+    double inverse_integral;           // [1/pixel^2] of f
 };
 sr_status sr_filter_prepare(struct sr_arena *arena, const struct sr_filter_model *model, const void *self, struct sr_filter *out, struct sr_error *error);
 /* Offset from the pixel's centre [pixel]; *weight so that the mean of weight * L is the filtered value. */
@@ -82,10 +83,24 @@ struct sr_film_pixel {
     uint32_t n, blocks, dropped;
 };
 
+/* ---- splats: light that paths from the lights bring to any place of the picture ----
+ *
+ * Sums are integers of 128 bits in units of 2^-56, so that they do not depend on the order in which threads add to them;
+ * each pixel has one for each channel and group of paths. A value beyond 2^39 is dropped and counted: 2^32 splats of a pixel
+ * cannot overflow. docs/decisions/0011-splats.md */
+enum { SR_SPLAT_GROUPS = 16 }; // at most; independent replicates beyond them share a group
+struct sr_film_splats {
+    uint32_t groups;                  // 2 or more: their spread tells the error
+    uint64_t *words;                  // [pixel][channel][group][low, high]
+    uint64_t paths[SR_SPLAT_GROUPS];  // begun at the lights, of each group
+    uint64_t dropped;                 // values that were not finite or too large
+};
+
 struct sr_film {
     struct sr_film_settings settings;
     uint32_t width, height;        // of the rendered part
     struct sr_film_pixel *pixels;  // width * height
+    struct sr_film_splats *splats; // NULL: none
     bool has_aov;
     struct sr_film_aov {
         float albedo[3], n[3], ns[3], p[3], depth, uv[2]; // sums over hits
@@ -98,6 +113,17 @@ void sr_film_destroy(struct sr_film *film);
 void sr_film_block_add(struct sr_film_block *b, const float rgb[3], bool is_finite);
 void sr_film_block_add_first(struct sr_film_block *b, const struct sr_first_hit *h);
 void sr_film_store(struct sr_film *film, uint32_t x, uint32_t y, const struct sr_film_block *b); // x, y in the rendered part
+
+/* Makes room for splats; [B] for each pixel, to be known before. */
+sr_status sr_film_add_splats(struct sr_film *film, uint32_t groups, struct sr_error *error);
+size_t sr_film_splats_B(uint32_t groups);
+/* rgb is what the mean over all places of the whole picture's raster would be multiplied by the filter there: each pixel whose
+ * filter reaches `raster` gains f rgb, and a pixel's value is the mean over paths. Threads may call it at the same time. */
+void sr_film_splat(struct sr_film *film, const struct sr_filter *filter, uint32_t group, sr_vec2 raster, const float rgb[3]);
+void sr_film_splat_paths(struct sr_film *film, uint32_t group, uint64_t paths); // so many paths have been begun
+double sr_film_splat_mean(const struct sr_film *film, size_t pixel, int channel);
+/* Variance of the mean of w . rgb over the pixels x0 <= x < x1, y0 <= y < y1, summed: paths splat neighbours together. */
+double sr_film_splat_variance(const struct sr_film *film, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1, const double w[3]);
 
 /* Mean of a pixel and the standard error of it. Ordinary images: the spread of the blocks, pooled over 5 x 5 pixels,
  * conservative; measurements (replicates): of the pixel's own blocks, Student with blocks - 1 degrees. */

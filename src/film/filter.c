@@ -158,12 +158,16 @@ static sr_vec2 find_peak(const struct sr_filter *f)
 }
 
 /* false: too many changes of sign, or no integral. *mean_sign: expectation of the sign of what is drawn. */
-static bool divide_axis(struct sr_filter_axis *a, const struct sr_filter *f, int axis, sr_vec2 peak, double *mean_sign)
+static bool divide_axis(struct sr_filter_axis *a, const struct sr_filter *f, int axis, sr_vec2 peak, double *mean_sign, double *integral)
 {
     enum { CELLS = SR_FILTER_SHARES * STEPS };
     double radius = (double)(axis == 0 ? f->radius.x : f->radius.y), width = 2 * radius / CELLS, all = 0;
-    for (int i = 0; i < CELLS; ++i)
-        all += fabs(along(f, axis, peak, -radius + (i + 0.5) * width));
+    *integral = 0;
+    for (int i = 0; i < CELLS; ++i) {
+        double value = along(f, axis, peak, -radius + (i + 0.5) * width);
+        all += fabs(value);
+        *integral += value * width;
+    }
     if (!(all > 0) || !isfinite(all))
         return false;
     double sum = 0;
@@ -205,15 +209,17 @@ static bool divide_axis(struct sr_filter_axis *a, const struct sr_filter *f, int
 sr_status sr_filter_prepare(struct sr_arena *arena, const struct sr_filter_model *model, const void *self, struct sr_filter *out, struct sr_error *error)
 {
     *out = (struct sr_filter){.model = model, .self = self, .radius = model->radius(self)};
-    if (model == &box_model) // uniform: no table
+    if (model == &box_model) { // uniform: no table
+        out->inverse_integral = 1 / (4 * (double)out->radius.x * (double)out->radius.y);
         return SR_OK;
+    }
     struct sr_filter_axis *axes = sr_arena_alloc(arena, 2 * sizeof *axes);
     if (!axes)
         return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for the pixel filter");
     sr_vec2 peak = find_peak(out);
-    double signs[2];
+    double signs[2], integrals[2];
     for (int i = 0; i < 2; ++i)
-        if (!divide_axis(&axes[i], out, i, peak, &signs[i]))
+        if (!divide_axis(&axes[i], out, i, peak, &signs[i], &integrals[i]))
             return sr_fail(error, SR_ERROR_INPUT, "PixelFilter \"%s\": it is zero, not finite, or changes its sign more than %d times along an axis",
                            model->name, SR_FILTER_SIGN_CHANGES);
     double mean_sign = signs[0] * signs[1];
@@ -221,6 +227,7 @@ sr_status sr_filter_prepare(struct sr_arena *arena, const struct sr_filter_model
     if (!(mean_sign > 1e-6))
         return sr_fail(error, SR_ERROR_INPUT, "PixelFilter \"%s\": its integral is not positive, so it cannot be normalised", model->name);
     out->weight = (float)((model->value(self, peak) < 0 ? -1 : 1) / mean_sign);
+    out->inverse_integral = (double)model->value(self, peak) / (integrals[0] * integrals[1]);
     out->axes = axes;
     return SR_OK;
 }

@@ -139,6 +139,7 @@ static inline bool sample_flat(const struct sr_light_area *m, sr_vec3 from, sr_v
     s->wi = sr_scale(1 / r, d);
     s->distance = r;
     s->p = sr_mad(p, height < 0 ? m->off : -m->off, a->n);
+    s->n = a->n;
     s->pdf = r2 * r * m->inverse_area / fabsf(height);
     s->is_delta = m->is_ghost;
     return s->pdf < INFINITY;
@@ -170,6 +171,7 @@ static inline bool sample_round(const struct sr_light_area *m, sr_vec3 from, sr_
     s->distance = sr_length(d);
     s->wi = sr_scale(1 / s->distance, d);
     s->p = p;
+    s->n = sr_scale(m->round.side, n);
     s->L = sr_spd_along(&m->emission->emitted, w);
     s->pdf = SR_INV_PI * 0.5f / rest;
     s->is_delta = m->is_ghost;
@@ -198,7 +200,7 @@ static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u
         return false;
     struct sr_point there = {.p = x.p, .p_error = x.p_error, .n = x.n};
     *s = (struct sr_light_sample){.L = radiance(m->emission, x.n, x.uv, sr_neg(wi), w), .wi = wi, .distance = r,
-                                  .p = sr_point_offset(&there, sr_neg(wi)), .pdf = x.pdf, .is_delta = m->is_ghost};
+                                  .p = sr_point_offset(&there, sr_neg(wi)), .n = x.n, .pdf = x.pdf, .is_delta = m->is_ghost};
     return !sr_spectrum_is_black(s->L);
 }
 
@@ -214,6 +216,32 @@ static float pdf(const void *self, const struct sr_point *reference, sr_vec3 wi,
     sr_vec3 d = sr_sub(there->p, reference->p);
     float height = fabsf(sr_dot(m->flat.n, d)), r2 = sr_length2(d), r = sqrtf(r2);
     return height > 1e-7f * r ? r2 * r * m->inverse_area / height : 0;
+}
+
+// by area and cosine
+static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w, struct sr_light_ray *ray)
+{
+    const struct sr_light_area *m = self;
+    struct sr_shape_sample x;
+    if (!m->shape.model->sample(m->shape.self, m->primitive, NULL, u_place, &x) || !(x.pdf > 0) || isinf(x.pdf))
+        return false;
+    bool is_two_sided = m->emission->two_sided, is_inside = is_two_sided && u_direction.x >= 0.5f;
+    if (is_two_sided)
+        u_direction.x = sr_min(is_inside ? 2 * u_direction.x - 1 : 2 * u_direction.x, SR_ONE_MINUS_EPSILON);
+    sr_vec3 local = sr_warp_cosine_hemisphere(u_direction);
+    struct sr_frame frame = sr_frame_from_z(is_inside ? sr_neg(x.n) : x.n);
+    *ray = (struct sr_light_ray){.from = {.p = x.p, .p_error = x.p_error, .n = x.n, .ns = x.n, .uv = x.uv}, .w = sr_to_world(&frame, local),
+                                 .pdf_area = x.pdf, .pdf_direction = local.z * SR_INV_PI * (is_two_sided ? 0.5f : 1)};
+    ray->L = radiance(m->emission, x.n, x.uv, ray->w, w);
+    return ray->pdf_direction > 0 && !sr_spectrum_is_black(ray->L);
+}
+
+static void emit_pdf(const void *self, sr_vec3 n, sr_vec3 w, float *pdf_area, float *pdf_direction)
+{
+    const struct sr_light_area *m = self;
+    float cos_theta = sr_dot(n, w);
+    *pdf_area = m->area > 0 ? 1 / m->area : 0;
+    *pdf_direction = m->emission->two_sided ? fabsf(cos_theta) * (0.5f * SR_INV_PI) : sr_max(cos_theta, 0) * SR_INV_PI;
 }
 
 static float power(const void *self)
@@ -233,5 +261,5 @@ static bool bounds(const void *self, struct sr_light_bounds *b)
 
 const struct sr_light_model sr_light_area = {
     .name = "diffuse", .params = sr_light_emission_params, .size = sizeof(struct sr_light_area),
-    .sample = sample, .pdf = pdf, .Le = Le, .bounds = bounds, .power = power,
+    .sample = sample, .pdf = pdf, .Le = Le, .bounds = bounds, .emit = emit, .emit_pdf = emit_pdf, .power = power,
 };

@@ -13,7 +13,8 @@ struct distant {
     float scale, illuminance; // [1] [lx]
     sr_vec3 from, to;
     sr_vec3 wi;               // derived: toward the light [1]
-    float radius;             // of the scene [m]
+    sr_vec3 centre;           // of the scene's sphere [m]
+    float radius;             // [m]
     float luminous, choice;   // [lx]
 };
 
@@ -45,8 +46,9 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
 
 static void place(void *self, sr_vec3 scene_centre, float scene_radius)
 {
-    (void)scene_centre;
-    ((struct distant *)self)->radius = scene_radius;
+    struct distant *m = self;
+    m->centre = scene_centre;
+    m->radius = scene_radius;
 }
 
 static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
@@ -55,6 +57,25 @@ static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u
     const struct distant *m = self;
     *s = (struct sr_light_sample){.L = sr_spd_eval(&m->L, w->lambda), .wi = m->wi, .distance = INFINITY, .pdf = 1, .is_delta = true};
     return true;
+}
+
+static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w, struct sr_light_ray *ray)
+{
+    (void)u_direction;
+    const struct distant *m = self;
+    if (!(m->radius > 0))
+        return false;
+    *ray = (struct sr_light_ray){.from = {.p = sr_light_outside(m->centre, m->radius, m->wi, u_place)}, .w = sr_neg(m->wi),
+                                 .L = sr_spd_along(&m->L, w), .pdf_area = SR_INV_PI / sr_sqr(m->radius), .pdf_direction = 1};
+    return true;
+}
+
+static void emit_pdf(const void *self, sr_vec3 n, sr_vec3 w, float *pdf_area, float *pdf_direction)
+{
+    (void)n, (void)w;
+    const struct distant *m = self;
+    *pdf_area = m->radius > 0 ? SR_INV_PI / sr_sqr(m->radius) : 0;
+    *pdf_direction = 1;
 }
 
 static float power(const void *self)
@@ -73,5 +94,6 @@ static bool bounds(const void *self, struct sr_light_bounds *b)
 
 const struct sr_light_model sr_light_distant = {
     .name = "distant", .params = params, .size = sizeof(struct distant), .is_infinite = true, .is_delta = true, .prepare = prepare,
-    .place = place, .sample = sample, .pdf = sr_light_delta_pdf, .Le = sr_light_delta_Le, .bounds = bounds, .power = power,
+    .place = place, .sample = sample, .pdf = sr_light_delta_pdf, .Le = sr_light_delta_Le, .bounds = bounds, .emit = emit,
+    .emit_pdf = emit_pdf, .power = power,
 };

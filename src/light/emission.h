@@ -35,6 +35,14 @@ static inline struct sr_rgb sr_light_texel(const struct sr_texels *t, uint32_t x
     return (struct sr_rgb){c.r > 0 ? c.r : 0, c.g > 0 ? c.g : 0, c.b > 0 ? c.b : 0};
 }
 
+/* Where light that travels against wi enters the scene: on a disk as wide as the scene's sphere, before it. */
+static inline sr_vec3 sr_light_outside(sr_vec3 centre, float radius, sr_vec3 wi, sr_vec2 u)
+{
+    struct sr_frame frame = sr_frame_from_z(wi);
+    sr_vec2 d = sr_warp_disk(u);
+    return sr_add(centre, sr_scale(radius, sr_to_world(&frame, (sr_vec3){d.x, d.y, 1.001f})));
+}
+
 /* For lights that no ray meets. */
 float sr_light_delta_pdf(const void *self, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there);
 sr_spectrum sr_light_delta_Le(const void *self, const struct sr_point *there, sr_vec3 w, const struct sr_wavelengths *wavelengths);

@@ -25,7 +25,8 @@ struct infinite {
     sr_vec3 columns[3];               // light to world
     float determinant;                // of to_light: a transform that is no rotation squeezes solid angles
     float luminance, choice;          // [cd/m^2] mean over the sphere
-    float radius;                     // of the scene [m]
+    sr_vec3 centre;                   // of the scene's sphere [m]
+    float radius;                     // [m]
 };
 
 static const struct sr_param params[] = {
@@ -127,8 +128,9 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
 
 static void place(void *self, sr_vec3 scene_centre, float scene_radius)
 {
-    (void)scene_centre;
-    ((struct infinite *)self)->radius = scene_radius;
+    struct infinite *m = self;
+    m->centre = scene_centre;
+    m->radius = scene_radius;
 }
 
 // direction in the world to the square; *jacobian: solid angle of the image over that of the world
@@ -211,6 +213,53 @@ static sr_spectrum Le_pdf(const void *self, sr_vec3 wi, const struct sr_waveleng
     return image_Le(m, p, w);
 }
 
+/* Half of the rays leave as `sample` draws them, half evenly: no ray carries more than twice the mean flux, and none that
+ * carries anything has no chance. */
+static float emit_density(const struct infinite *m, sr_vec3 wi)
+{
+    if (!is_image(m))
+        return SR_INV_PI / 4;
+    float jacobian;
+    sr_vec2 p = square(m, wi, &jacobian);
+    return (0.5f + 0.5f * sr_piecewise2_pdf(&m->density, p)) * jacobian * (SR_INV_PI / 4);
+}
+
+static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w, struct sr_light_ray *ray)
+{
+    const struct infinite *m = self;
+    if (!(m->radius > 0))
+        return false;
+    sr_vec2 p = u_direction;
+    bool is_even = p.x < 0.5f;
+    p.x = sr_min(is_even ? 2 * p.x : 2 * p.x - 1, SR_ONE_MINUS_EPSILON);
+    float unused;
+    if (is_image(m) && !is_even)
+        p = sr_piecewise2_sample(&m->density, p, &unused);
+    sr_vec3 d = sr_equal_area_square_to_sphere(is_image(m) ? p : u_direction);
+    sr_vec3 wi = d;
+    if (is_image(m))
+        wi = sr_normalize(sr_add(sr_add(sr_scale(d.x, m->columns[0]), sr_scale(d.y, m->columns[1])), sr_scale(d.z, m->columns[2])));
+    *ray = (struct sr_light_ray){.from = {.p = sr_light_outside(m->centre, m->radius, wi, u_place)}, .w = sr_neg(wi),
+                                 .L = is_image(m) ? image_Le(m, p, w) : sr_spd_along(&m->L, w), .pdf_area = SR_INV_PI / sr_sqr(m->radius),
+                                 .pdf_direction = emit_density(m, wi)};
+    return ray->pdf_direction > 0 && !sr_spectrum_is_black(ray->L);
+}
+
+static void emit_pdf(const void *self, sr_vec3 n, sr_vec3 w, float *pdf_area, float *pdf_direction)
+{
+    (void)n;
+    const struct infinite *m = self;
+    *pdf_area = m->radius > 0 ? SR_INV_PI / sr_sqr(m->radius) : 0;
+    *pdf_direction = emit_density(m, sr_neg(w));
+}
+
+// of what enters the scene's sphere, whether it is drawn by receivers or not
+static float emit_weight(const void *self)
+{
+    const struct infinite *m = self;
+    return 4 * SR_PI * SR_PI * sr_sqr(m->radius) * (is_image(m) ? sr_max(m->luminance, m->choice) : sr_light_choice_weight(&m->L));
+}
+
 static float power(const void *self)
 {
     const struct infinite *m = self;
@@ -227,5 +276,6 @@ static bool bounds(const void *self, struct sr_light_bounds *b)
 
 const struct sr_light_model sr_light_infinite = {
     .name = "infinite", .params = params, .size = sizeof(struct infinite), .is_infinite = true, .prepare = prepare,
-    .place = place, .sample = sample, .pdf = pdf, .Le = Le, .Le_pdf = Le_pdf, .bounds = bounds, .power = power,
+    .place = place, .sample = sample, .pdf = pdf, .Le = Le, .Le_pdf = Le_pdf, .bounds = bounds, .emit = emit,
+    .emit_pdf = emit_pdf, .emit_weight = emit_weight, .power = power,
 };

@@ -23,8 +23,22 @@ struct sr_light_sample {
     sr_vec3 wi;         // [1] toward the light
     float distance;     // [m]; INFINITY for light from outside the scene
     sr_vec3 p;          // [m] where it leaves, off the light's surface, so that a ray may end there; unused at INFINITY
+    sr_vec3 n;          // [1] the light's surface there, outside; 0: it has none
     float pdf;          // [1/sr]
     bool is_delta;      // no ray meets this light by chance, so that this sample has weight 1 (also area lights that are ghosts)
+};
+
+/* Light as it leaves, for paths that begin at lights. It carries the flux
+ *
+ *     L |cos theta| / (pmf pdf_area pdf_direction)         [lm], cos theta = 1 where there is no surface */
+struct sr_light_ray {
+    struct sr_point from; // where: p, p_error, n, uv; n is 0 at points and where light enters the scene from outside
+    sr_vec3 w;            // [1] the way it travels
+    sr_spectrum L;        // radiance; of points the intensity, of distant lights the irradiance across w
+    float pdf_area;       // [1/m^2]; points: 1; from outside: across w, on the disk that the scene's sphere shows
+    float pdf_direction;  // [1/sr]; distant lights: 1
+    float pmf;            // [1] of this light among all; sr_lights_emit fills it and the next
+    uint32_t light;
 };
 
 /* What the tree of lights knows of a light (Conty Estevez & Kulla 2018). */
@@ -58,6 +72,11 @@ struct sr_light_model {
     /* Infinite lights: Le along a ray that escapes toward wi, and pdf, at once; NULL: it has no Le. */
     sr_spectrum (*Le_pdf)(const void *self, sr_vec3 wi, const struct sr_wavelengths *wavelengths, float *pdf);
     bool (*bounds)(const void *self, struct sr_light_bounds *bounds); // false: infinite, power alone is set
+    /* A ray that leaves it, drawn in nearly the proportion of what it emits (time is the caller's), and the densities with which
+     * it draws. n: of the light's surface there. */
+    bool (*emit)(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w, struct sr_light_ray *ray);
+    void (*emit_pdf)(const void *self, sr_vec3 n, sr_vec3 w, float *pdf_area, float *pdf_direction);
+    float (*emit_weight)(const void *self); // of the light where paths begin [cd sr]; NULL: the power of its bounds
     float (*power)(const void *self); // luminous integral of the emitted flux [cd sr]; infinite: of what enters the scene's
                                       // sphere, and 0 for a uniform sky, which is never chosen
 };
@@ -139,6 +158,7 @@ struct sr_lights {
     uint32_t infinite_count;
     enum sr_light_choice choice;
     const struct sr_table *white; // of the first light: worth knowing along a path; or NULL
+    struct sr_alias emitting; // by emitted power: where paths begin
     uint32_t only;            // 1 + the index of the one light that can be chosen, or 0 if there are several or none
     const void *tree;         // private: nodes, each light's way to its leaf, alias table
 };
@@ -162,5 +182,13 @@ float sr_lights_pmf(const struct sr_lights *lights, const struct sr_point *x, ui
 /* The same in proportion to the area that glows, whoever looks: surfaces alone. Only x->p is read. */
 bool sr_lights_pick_by_area(const struct sr_lights *lights, const struct sr_point *x, float u, uint32_t *index, float *pmf);
 float sr_lights_pmf_by_area(const struct sr_lights *lights, uint32_t index);
+
+/* A ray that leaves one of the lights, which is chosen by its power. false: none. */
+bool sr_lights_emit(const struct sr_lights *lights, float u_light, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w,
+                    struct sr_light_ray *ray);
+static inline float sr_lights_emit_pmf(const struct sr_lights *lights, uint32_t index)
+{
+    return lights->emitting.pmf ? lights->emitting.pmf[index] : 0;
+}
 
 #endif

@@ -52,6 +52,14 @@ static const struct sr_table *white_of(struct sr_light light)
     return e->texels.width ? sr_colour_space(e->texels.space)->illuminant : e->emitted.kind == SR_SPD_ILLUMINANT ? e->emitted.table : NULL;
 }
 
+static float emitted_by(struct sr_light light)
+{
+    if (!light.model->emit)
+        return 0;
+    float weight = light.model->emit_weight ? light.model->emit_weight(light.self) : power_of(light);
+    return weight > 0 && isfinite(weight) ? weight : 0;
+}
+
 static sr_status build_choice(struct sr_arena *arena, struct sr_lights *l, struct sr_error *error)
 {
     uint32_t n = l->count, infinite_count = 0;
@@ -92,6 +100,13 @@ static sr_status build_choice(struct sr_arena *arena, struct sr_lights *l, struc
     is_built = is_built && area_before;
     if (is_built)
         c->area_before = area_before;
+    bool is_any = false;
+    for (uint32_t i = 0; is_built && i < n; ++i) {
+        weights[i] = emitted_by(l->lights[i]);
+        is_any |= weights[i] > 0;
+    }
+    if (is_built && is_any)
+        is_built = sr_alias_build(arena, weights, n, &l->emitting);
     sr_free(choosable);
     sr_free(outside);
     sr_free(infinite);
@@ -204,4 +219,19 @@ float sr_lights_pmf_by_area(const struct sr_lights *lights, uint32_t index)
     const struct choice *c = lights->tree;
     double total = c ? c->area_before[block_count(lights->count)] : 0;
     return total > 0 ? (float)((double)glowing_area(lights->lights[index]) / total) : 0;
+}
+
+bool sr_lights_emit(const struct sr_lights *lights, float u_light, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w,
+                    struct sr_light_ray *ray)
+{
+    if (!lights->emitting.pmf)
+        return false;
+    float pmf;
+    uint32_t index = sr_alias_sample(&lights->emitting, u_light, &pmf, NULL);
+    struct sr_light light = lights->lights[index];
+    if (!(pmf > 0) || !light.model->emit(light.self, u_place, u_direction, w, ray))
+        return false;
+    ray->pmf = pmf;
+    ray->light = index;
+    return true;
 }

@@ -51,6 +51,22 @@ static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u
     return true;
 }
 
+static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w, struct sr_light_ray *ray)
+{
+    (void)u_place;
+    const struct point *m = self;
+    *ray = (struct sr_light_ray){.from = {.p = m->p}, .w = sr_warp_uniform_sphere(u_direction), .L = sr_spd_along(&m->I, w),
+                                 .pdf_area = 1, .pdf_direction = SR_INV_PI / 4};
+    return true;
+}
+
+static void emit_pdf(const void *self, sr_vec3 n, sr_vec3 w, float *pdf_area, float *pdf_direction)
+{
+    (void)self, (void)n, (void)w;
+    *pdf_area = 1;
+    *pdf_direction = SR_INV_PI / 4;
+}
+
 static float power(const void *self)
 {
     return 4 * SR_PI * ((const struct point *)self)->luminous;
@@ -65,5 +81,6 @@ static bool bounds(const void *self, struct sr_light_bounds *b)
 
 const struct sr_light_model sr_light_point = {
     .name = "point", .params = params, .size = sizeof(struct point), .is_delta = true, .prepare = prepare,
-    .sample = sample, .pdf = sr_light_delta_pdf, .Le = sr_light_delta_Le, .bounds = bounds, .power = power,
+    .sample = sample, .pdf = sr_light_delta_pdf, .Le = sr_light_delta_Le, .bounds = bounds, .emit = emit, .emit_pdf = emit_pdf,
+    .power = power,
 };

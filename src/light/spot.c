@@ -89,6 +89,47 @@ static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u
     return true;
 }
 
+// where the rim's share u of the flux between cos_total and cos_start ends: the t of 2 t^3 - t^4 = u, by Newton's method
+static float rim(float u)
+{
+    float t = cbrtf(u / 2);
+    for (int i = 0; i < 5 && t > 0; ++i)
+        t = sr_clamp(t - (t * t * t * (2 - t) - u) / (2 * t * t * (3 - 2 * t)), 0, 1);
+    return t;
+}
+
+// in proportion to I(theta), so that all rays carry the same flux
+static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w, struct sr_light_ray *ray)
+{
+    (void)u_place;
+    const struct spot *m = self;
+    float inner = 1 - m->cos_start, outer = (m->cos_start - m->cos_total) / 2, at = u_direction.x * (inner + outer);
+    if (!(inner + outer > 0))
+        return false;
+    float rest = at < inner ? at : 1 - sr_lerp(rim(sr_min(1, 1 - (at - inner) / outer)), m->cos_total, m->cos_start); // 1 - cos_theta
+    float sin_theta = sr_safe_sqrt(rest * (2 - rest)), cos_theta = 1 - rest, sin_phi, cos_phi, share = falloff(m, cos_theta);
+    sr_sin_cos_turn(u_direction.y, &sin_phi, &cos_phi);
+    struct sr_frame frame = sr_frame_from_z(m->axis);
+    *ray = (struct sr_light_ray){.from = {.p = m->p}, .w = sr_to_world(&frame, (sr_vec3){sin_theta * cos_phi, sin_theta * sin_phi, cos_theta}),
+                                 .L = sr_spd_along(&m->I, w) * share, .pdf_area = 1, .pdf_direction = share / solid_angle(m)};
+    return ray->pdf_direction > 0;
+}
+
+static void emit_pdf(const void *self, sr_vec3 n, sr_vec3 w, float *pdf_area, float *pdf_direction)
+{
+    (void)n;
+    const struct spot *m = self;
+    float share = falloff(m, sr_dot(w, m->axis));
+    *pdf_area = 1;
+    *pdf_direction = share > 0 ? share / solid_angle(m) : 0;
+}
+
+static float emit_weight(const void *self)
+{
+    const struct spot *m = self;
+    return m->choice * solid_angle(m);
+}
+
 static float power(const void *self)
 {
     const struct spot *m = self;
@@ -107,5 +148,6 @@ static bool bounds(const void *self, struct sr_light_bounds *b)
 
 const struct sr_light_model sr_light_spot = {
     .name = "spot", .params = params, .size = sizeof(struct spot), .is_delta = true, .prepare = prepare,
-    .sample = sample, .pdf = sr_light_delta_pdf, .Le = sr_light_delta_Le, .bounds = bounds, .power = power,
+    .sample = sample, .pdf = sr_light_delta_pdf, .Le = sr_light_delta_Le, .bounds = bounds, .emit = emit, .emit_pdf = emit_pdf,
+    .emit_weight = emit_weight, .power = power,
 };

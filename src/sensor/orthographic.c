@@ -3,7 +3,8 @@
  *
  *     o = (x, y, 0) + l,     d ~ (0, 0, 1) - l / F
  *
- * (x, y) on the screen [m], l on the lens [m], F the distance to the plane that is sharp [m]. */
+ * (x, y) on the screen [m], l on the lens [m], F the distance to the plane that is sharp [m]. A pixel is as large across its
+ * rays wherever it looks: weight = 1 / |(dx x dy) . d|. */
 #include "sensor/private.h"
 
 struct orthographic {
@@ -13,6 +14,7 @@ struct orthographic {
     sr_vec3 lens_x, lens_y; // [m] from the lens' middle to its rim
     sr_vec3 d;              // [1] along the camera's axis
     float inv_focal;        // [1/m]
+    sr_vec3 n, dual_x, dual_y; // across the screen; and the coordinates along dx and dy
 };
 
 static const struct sr_param params[] = {
@@ -40,6 +42,7 @@ static sr_status prepare(void *self, struct sr_sensor_raster raster, const struc
     s->lens_y = sr_scale(p->lens_radius, axes.y);
     s->d = axes.z;
     s->inv_focal = 1 / p->focal_distance;
+    sensor_duals(s->dx, s->dy, &s->n, &s->dual_x, &s->dual_y);
     return SR_OK;
 }
 
@@ -63,10 +66,37 @@ static bool ray(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_time, 
     return true;
 }
 
+static float density(const void *self, sr_vec3 d, float distance)
+{
+    (void)distance;
+    const struct orthographic *s = self;
+    return 1 / fabsf(sr_dot(s->n, d));
+}
+
+static bool connect(const void *self, sr_vec3 p, sr_vec2 u_lens, struct sr_sensor_view *view)
+{
+    const struct orthographic *s = self;
+    sr_vec3 lens = {0, 0, 0}, d = s->d;
+    if (s->projection.lens_radius > 0) {
+        sr_vec2 l = sr_warp_disk(u_lens);
+        lens = sr_add(sr_scale(l.x, s->lens_x), sr_scale(l.y, s->lens_y));
+        d = sr_mad(d, -s->inv_focal, lens);
+    }
+    float length = sr_length(d), t = sr_dot(s->n, sr_sub(p, s->o0)) / sr_dot(s->n, d); // p = o + t d
+    if (!(t > 0) || !(length > 0))
+        return false;
+    sr_vec3 o = sr_mad(p, -t, d), on_screen = sr_sub(sr_sub(o, s->o0), lens), w = sr_scale(1 / length, d);
+    *view = (struct sr_sensor_view){.p = o, .wi = sr_neg(w), .distance = t * length, .weight = density(self, w, t * length),
+                                    .raster = {sr_dot(s->dual_x, on_screen), sr_dot(s->dual_y, on_screen)}};
+    return view->weight < INFINITY;
+}
+
 const struct sr_sensor_model sr_sensor_orthographic = {
     .name = "orthographic",
     .params = params,
     .size = sizeof(struct orthographic),
     .prepare = prepare,
     .ray = ray,
+    .connect = connect,
+    .density = density,
 };

@@ -5,7 +5,12 @@
  *
  * (x, y) on the screen [1], l on the lens [m], F the distance to the sharp plane [m]: all rays of one pixel meet in
  * F (k x, k y, 1). fov spans the image's shorter side. A ray brings its radiance with weight 1: the falloff of cos^4
- * that a flat film has is no part of this camera, its pixels are radiances. Cook, Porter & Carpenter 1984. */
+ * that a flat film has is no part of this camera, its pixels are radiances. Cook, Porter & Carpenter 1984.
+ *
+ * Seen from a point at distance r, with the direction v = d0 + X dx + Y dy - l/F of a ray through raster (X, Y) and the
+ * screen's normal n = dx x dy, on which v has the length K = n . v for all rays alike:
+ *
+ *     dw = |n . v| / |v|^3 dX dY = |n . w|^3 / K^2 dX dY,  w = v / |v|     so     weight = K^2 / (|n . w|^3 r^2) */
 #include "sensor/private.h"
 
 struct perspective {
@@ -16,6 +21,8 @@ struct perspective {
     sr_vec3 lens_x, lens_y; // [m] from the lens' middle to its rim
     sr_vec3 d0, dx, dy;     // direction = d0 + x dx + y dy, x and y in pixels; length 1 along the camera's axis
     float inv_focal;        // [1/m]
+    sr_vec3 n, dual_x, dual_y; // across the screen; and the coordinates along dx and dy
+    float K;
 };
 
 #define OFFSET(member) offsetof(struct perspective, member)
@@ -48,6 +55,8 @@ static sr_status prepare(void *self, struct sr_sensor_raster raster, const struc
     s->lens_x = sr_scale(p->lens_radius, axes.x);
     s->lens_y = sr_scale(p->lens_radius, axes.y);
     s->inv_focal = 1 / p->focal_distance;
+    sensor_duals(s->dx, s->dy, &s->n, &s->dual_x, &s->dual_y);
+    s->K = sr_dot(s->n, axes.z);
     return SR_OK;
 }
 
@@ -72,10 +81,37 @@ static bool ray(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_time, 
     return true;
 }
 
+static float density(const void *self, sr_vec3 d, float distance)
+{
+    const struct perspective *s = self;
+    float c = sr_dot(s->n, d);
+    return c * s->K > 0 ? s->K * s->K / (fabsf(c * c * c) * distance * distance) : 0;
+}
+
+static bool connect(const void *self, sr_vec3 p, sr_vec2 u_lens, struct sr_sensor_view *view)
+{
+    const struct perspective *s = self;
+    sr_vec3 lens = {0, 0, 0};
+    if (s->projection.lens_radius > 0) {
+        sr_vec2 l = sr_warp_disk(u_lens);
+        lens = sr_add(sr_scale(l.x, s->lens_x), sr_scale(l.y, s->lens_y));
+    }
+    sr_vec3 o = sr_add(s->origin, lens), to = sr_sub(p, o);
+    float t = sr_dot(s->n, to) / s->K, distance = sr_length(to); // to = t v
+    if (!(t > 0) || !(distance > 0))
+        return false;
+    sr_vec3 on_screen = sr_sub(sr_mad(sr_scale(1 / t, to), s->inv_focal, lens), s->d0), w = sr_scale(1 / distance, to);
+    *view = (struct sr_sensor_view){.p = o, .wi = sr_neg(w), .distance = distance, .weight = density(self, w, distance),
+                                    .raster = {sr_dot(s->dual_x, on_screen), sr_dot(s->dual_y, on_screen)}};
+    return view->weight > 0 && view->weight < INFINITY;
+}
+
 const struct sr_sensor_model sr_sensor_perspective = {
     .name = "perspective",
     .params = params,
     .size = sizeof(struct perspective),
     .prepare = prepare,
     .ray = ray,
+    .connect = connect,
+    .density = density,
 };

@@ -54,6 +54,15 @@ struct sensor_axes {
 };
 struct sensor_axes sensor_axes(const struct sr_transform *camera_to_world);
 
+/* Coordinates of a vector by two others that span a plane: dot products with these. n: their cross product. */
+static inline void sensor_duals(sr_vec3 a, sr_vec3 b, sr_vec3 *n, sr_vec3 *dual_a, sr_vec3 *dual_b)
+{
+    *n = sr_cross(a, b);
+    float inverse = 1 / sr_length2(*n);
+    *dual_a = sr_scale(inverse, sr_cross(b, *n));
+    *dual_b = sr_scale(inverse, sr_cross(*n, a));
+}
+
 /* Keeps what all sensors are given; refuses an empty raster and a transform without an inverse. */
 sr_status sensor_common_prepare(struct sr_sensor_common *c, struct sr_sensor_raster raster,
                                 const struct sr_transform *camera_to_world, struct sr_error *error);

@@ -14,6 +14,18 @@ struct sr_sensor_ray {
     float weight;       // [1] of the radiance that the ray brings
 };
 
+/* How a sensor sees a point, were nothing in between: one of its rays, backwards. What the picture gains by radiance L that
+ * leaves a surface element dA at the point is L weight |cos theta| dA, at the place `raster`, in [radiance pixel^2]: a pixel
+ * is the mean of that over its filter, which has the integral 1 over [pixel^2]. That is Veach's importance We, in the
+ * convention of films whose pixels are radiances. */
+struct sr_sensor_view {
+    sr_vec3 p;      // [m] where the ray begins
+    sr_vec3 wi;     // [1] from the point toward it
+    float distance; // [m]
+    sr_vec2 raster; // [pixel] also outside the picture, where a wide filter still sees it
+    float weight;   // [pixel^2/m^2] raster for each area across wi at the point
+};
+
 /* The picture that a sensor serves, in pixels. */
 struct sr_sensor_raster {
     uint32_t width, height;
@@ -27,6 +39,10 @@ struct sr_sensor_model {
                          struct sr_arena *arena, struct sr_error *error);
     /* raster: position in pixels, (0,0) the upper left corner; u_lens, u_time uniform. false: no light comes */
     bool (*ray)(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_time, struct sr_sensor_ray *out);
+    /* The ray through a point of the lens that meets p; false: there is none. */
+    bool (*connect)(const void *self, sr_vec3 p, sr_vec2 u_lens, struct sr_sensor_view *view);
+    /* The same weight, of a ray's direction, at a distance along it [pixel^2/m^2]. */
+    float (*density)(const void *self, sr_vec3 d, float distance);
 };
 extern const struct sr_sensor_model *const sr_sensor_models[]; // ends with NULL
 const struct sr_sensor_model *sr_sensor_model_find(const char *name);
