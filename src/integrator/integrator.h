@@ -6,9 +6,27 @@
 #define SR_INTEGRATOR_INTEGRATOR_H
 
 #include "scene/scene.h"
+#include "sensor/sensor.h"
+
+/* What paths from the lights are told to: a sensor with its film, or a meter. It gains
+ *
+ *     beta f(w, wi) |cos theta| weight          w toward the target, cos theta of w at the vertex
+ *
+ * by each vertex that carries the flux beta; connect gives w and the weight (a sensor's: struct sr_sensor_view). */
+struct sr_target {
+    const void *self;
+    bool (*connect)(const void *self, sr_vec3 p, sr_vec2 u, struct sr_sensor_view *view);
+    float (*density)(const void *self, sr_vec3 d, float distance); // of a sensor's rays, for weighing; NULL: a meter
+    float pixels;                       // [pixel^2] of the raster that they are spread over
+    const struct sr_path_start *middle; // NULL, or a sensor ray, for footprints
+    struct sr_sampler sampler;          // of the path from the lights that is wanted now
+    void (*add)(void *user, sr_vec2 raster, sr_spectrum gain, const struct sr_wavelengths *w);
+    void *user;
+};
 
 /* What one thread owns while it renders. */
 struct sr_worker {
+    const struct sr_target *target;       // NULL: nobody listens, and L alone must be all
     uint64_t rays, shadow_rays, vertices; // counted, never shared
     struct sr_ray_log *log;               // NULL, or where rays are recorded until it is full
 };
@@ -36,6 +54,10 @@ struct sr_integrator_model {
     sr_spectrum (*L)(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
                      struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker);
     bool knows_receivers; // weighs what a ray from start->receiver meets
+    /* L is only what worker->target, if there is one, is not told of: by L itself, or by splat, one path from the lights with
+     * the numbers target->sampler. As many are wanted as samples in all. */
+    bool splats;
+    void (*splat)(const void *self, const struct sr_scene *scene, struct sr_wavelengths *w, struct sr_worker *worker); // or NULL
     /* Once the parameters are known: checks them, computes what follows from them. NULL: nothing to do. */
     sr_status (*prepare)(void *self, struct sr_arena *arena, struct sr_error *error);
     /* One sentence: which light of this scene the estimator cannot find, so that it is missing from the result. NULL, or

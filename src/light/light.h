@@ -158,7 +158,6 @@ struct sr_lights {
     uint32_t infinite_count;
     enum sr_light_choice choice;
     const struct sr_table *white; // of the first light: worth knowing along a path; or NULL
-    struct sr_alias emitting; // by emitted power: where paths begin
     uint32_t only;            // 1 + the index of the one light that can be chosen, or 0 if there are several or none
     const void *tree;         // private: nodes, each light's way to its leaf, alias table
 };
@@ -186,9 +185,6 @@ float sr_lights_pmf_by_area(const struct sr_lights *lights, uint32_t index);
 /* A ray that leaves one of the lights, which is chosen by its power. false: none. */
 bool sr_lights_emit(const struct sr_lights *lights, float u_light, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w,
                     struct sr_light_ray *ray);
-static inline float sr_lights_emit_pmf(const struct sr_lights *lights, uint32_t index)
-{
-    return lights->emitting.pmf ? lights->emitting.pmf[index] : 0;
-}
+float sr_lights_emit_pmf(const struct sr_lights *lights, uint32_t index);
 
 #endif

@@ -15,7 +15,7 @@
 struct choice {
     struct sr_light_tree tree;
     struct sr_alias alias;     // power: over all lights
-    const double *area_before; // [m^2] that glows before each block of lights, and in all
+    const double *area, *emitted; // [m^2] that glows, [cd sr] that leaves before each block of lights, and in all
     const uint32_t *place;     // of each light: in the tree, NEVER or INFINITE
     const uint32_t *choosable; // uniform: those with power
     uint32_t choosable_count;
@@ -31,7 +31,7 @@ static float power_of(struct sr_light light)
     return b.power > 0 && isfinite(b.power) ? b.power : 0;
 }
 
-enum { BLOCK = 32 }; // lights of which one sum of areas is kept
+enum { BLOCK = 32 }; // lights of which one sum is kept
 static uint32_t block_count(uint32_t lights)
 {
     return lights / BLOCK + (lights % BLOCK != 0);
@@ -58,6 +58,20 @@ static float emitted_by(struct sr_light light)
         return 0;
     float weight = light.model->emit_weight ? light.model->emit_weight(light.self) : power_of(light);
     return weight > 0 && isfinite(weight) ? weight : 0;
+}
+
+typedef float weight_of(struct sr_light light);
+
+static double *before_blocks(struct sr_arena *arena, const struct sr_lights *l, weight_of *weight)
+{
+    uint32_t blocks = block_count(l->count);
+    double *before = sr_arena_alloc(arena, (blocks + 1) * sizeof *before), sum = 0;
+    for (uint32_t b = 0; before && b <= blocks; ++b) {
+        before[b] = sum;
+        for (uint32_t i = b * BLOCK; i < l->count && i < (b + 1) * BLOCK; ++i)
+            sum += (double)weight(l->lights[i]);
+    }
+    return before;
 }
 
 static sr_status build_choice(struct sr_arena *arena, struct sr_lights *l, struct sr_error *error)
@@ -90,23 +104,9 @@ static sr_status build_choice(struct sr_arena *arena, struct sr_lights *l, struc
     }
     if (is_built && l->choice == SR_LIGHTS_POWER && c->choosable_count > 1)
         is_built = sr_alias_build(arena, weights, n, &c->alias);
-    uint32_t blocks = block_count(n);
-    double *area_before = sr_arena_alloc(arena, (blocks + 1) * sizeof *area_before), area = 0;
-    for (uint32_t b = 0; area_before && b <= blocks; ++b) {
-        area_before[b] = area;
-        for (uint32_t i = b * BLOCK; i < n && i < (b + 1) * BLOCK; ++i)
-            area += (double)glowing_area(l->lights[i]);
-    }
-    is_built = is_built && area_before;
-    if (is_built)
-        c->area_before = area_before;
-    bool is_any = false;
-    for (uint32_t i = 0; is_built && i < n; ++i) {
-        weights[i] = emitted_by(l->lights[i]);
-        is_any |= weights[i] > 0;
-    }
-    if (is_built && is_any)
-        is_built = sr_alias_build(arena, weights, n, &l->emitting);
+    c->area = before_blocks(arena, l, glowing_area);
+    c->emitted = before_blocks(arena, l, emitted_by);
+    is_built = is_built && c->area && c->emitted;
     sr_free(choosable);
     sr_free(outside);
     sr_free(infinite);
@@ -183,55 +183,74 @@ float sr_lights_pmf(const struct sr_lights *lights, const struct sr_point *x, ui
     return c->place[index] == INFINITE ? c->share : c->share * sr_light_tree_pmf(&c->tree, x->p, x->ns, c->place[index]);
 }
 
-bool sr_lights_pick_by_area(const struct sr_lights *lights, const struct sr_point *x, float u, uint32_t *index, float *pmf)
+static bool pick_by(const struct sr_lights *lights, const double *before, weight_of *weight, double u, uint32_t *index, float *pmf)
 {
-    const struct choice *c = lights->tree;
     uint32_t lo = 0, hi = block_count(lights->count);
-    if (!c || !(c->area_before[hi] > 0))
+    double total = before[hi], left = u * total;
+    if (!(total > 0))
         return false;
-    double total = c->area_before[hi], left = with_more_bits(u, x->p) * total;
     while (hi - lo > 1) {
         uint32_t middle = lo + (hi - lo) / 2;
-        if (c->area_before[middle] <= left)
+        if (before[middle] <= left)
             lo = middle;
         else
             hi = middle;
     }
-    left -= c->area_before[lo];
+    left -= before[lo];
     uint32_t end = (lo + 1) * BLOCK < lights->count ? (lo + 1) * BLOCK : lights->count, last = UINT32_MAX;
+    double of_last = 0;
     for (uint32_t i = lo * BLOCK; i < end; ++i) {
-        double area = (double)glowing_area(lights->lights[i]);
-        if (area > 0)
+        double w = (double)weight(lights->lights[i]);
+        if (w > 0) {
             last = i;
-        left -= area;
+            of_last = w;
+        }
+        left -= w;
         if (left < 0)
             break;
     }
-    if (last == UINT32_MAX)
-        return false;
     *index = last;
-    *pmf = (float)((double)glowing_area(lights->lights[last]) / total);
-    return true;
+    *pmf = (float)(of_last / total);
+    return *pmf > 0;
+}
+
+static float pmf_by(const struct sr_lights *lights, const double *before, weight_of *weight, uint32_t index)
+{
+    double total = before[block_count(lights->count)];
+    return total > 0 ? (float)((double)weight(lights->lights[index]) / total) : 0;
+}
+
+bool sr_lights_pick_by_area(const struct sr_lights *lights, const struct sr_point *x, float u, uint32_t *index, float *pmf)
+{
+    const struct choice *c = lights->tree;
+    return c && pick_by(lights, c->area, glowing_area, with_more_bits(u, x->p), index, pmf);
 }
 
 float sr_lights_pmf_by_area(const struct sr_lights *lights, uint32_t index)
 {
     const struct choice *c = lights->tree;
-    double total = c ? c->area_before[block_count(lights->count)] : 0;
-    return total > 0 ? (float)((double)glowing_area(lights->lights[index]) / total) : 0;
+    return c ? pmf_by(lights, c->area, glowing_area, index) : 0;
 }
 
 bool sr_lights_emit(const struct sr_lights *lights, float u_light, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w,
                     struct sr_light_ray *ray)
 {
-    if (!lights->emitting.pmf)
+    const struct choice *c = lights->tree;
+    double u = with_more_bits(u_light, (sr_vec3){u_place.x, u_place.y, u_direction.x});
+    if (!c || !pick_by(lights, c->emitted, emitted_by, u, &ray->light, &ray->pmf))
         return false;
-    float pmf;
-    uint32_t index = sr_alias_sample(&lights->emitting, u_light, &pmf, NULL);
+    uint32_t index = ray->light;
+    float pmf = ray->pmf;
     struct sr_light light = lights->lights[index];
-    if (!(pmf > 0) || !light.model->emit(light.self, u_place, u_direction, w, ray))
+    if (!light.model->emit(light.self, u_place, u_direction, w, ray))
         return false;
-    ray->pmf = pmf;
     ray->light = index;
+    ray->pmf = pmf;
     return true;
+}
+
+float sr_lights_emit_pmf(const struct sr_lights *lights, uint32_t index)
+{
+    const struct choice *c = lights->tree;
+    return c ? pmf_by(lights, c->emitted, emitted_by, index) : 0;
 }

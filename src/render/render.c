@@ -7,6 +7,7 @@
 #include <sched.h>
 
 enum { DEFAULT_TILE = 16, ORDINARY_BLOCKS = 4 };
+static const float PIXEL_SHARE = 0.125f; // of a pixel's footprint: see sample_pixel
 
 /* What all samples of a job share. */
 struct response {
@@ -30,6 +31,8 @@ struct run {
     uint32_t first_dropped[4];     // x, y, replicate, sample
     bool has_dropped;
     struct sr_film_block *scratch; // tile * tile for each thread
+    struct sr_path_start middle;   // a ray of the sensor's, for the footprints of light paths
+    bool has_middle;
 };
 
 /* ---- one sample ---- */
@@ -83,7 +86,7 @@ static bool sample_pixel(const struct sr_render_job *job, const struct response 
 
     // jittered samples smooth a pixel themselves, so that textures need little filtering. pbrt's share at 64 samples and
     // more; the same at any count, or the picture's expectation would depend on it (bump maps: by a factor of 2)
-    float share = job->jitter_pixel ? 0.125f : 1;
+    float share = job->jitter_pixel ? PIXEL_SHARE : 1;
     struct sr_path_start start = {.ray = view.ray, .dodx = sr_scale(share, view.dodx), .dody = sr_scale(share, view.dody),
                                   .dddx = sr_scale(share, view.dddx), .dddy = sr_scale(share, view.dddy)};
     struct sr_hit hit;
@@ -122,6 +125,67 @@ bool sr_render_sample(const struct sr_render_job *job, uint32_t x, uint32_t y, u
     return sample_pixel(job, &response, x, y, &sampler, rgb, first, worker);
 }
 
+/* ---- paths from the lights ---- */
+
+/* Where they are told, by one thread. */
+struct splatting {
+    struct run *run;
+    uint32_t group;
+    struct sr_target target;
+};
+
+static void add_splat(void *user, sr_vec2 raster, sr_spectrum gain, const struct sr_wavelengths *w)
+{
+    struct splatting *s = user;
+    const struct sr_render_job *job = s->run->job;
+    struct sr_xyz xyz = sr_spectrum_to_xyz(gain, w);
+    const float(*m)[3] = s->run->response.rgb_from_xyz;
+    float rgb[3];
+    for (int c = 0; c < 3; ++c)
+        rgb[c] = m[c][0] * xyz.x + m[c][1] * xyz.y + m[c][2] * xyz.z;
+    // one path goes with a sample of one pixel: that share counts where components are clamped
+    float largest = sr_max(rgb[0], sr_max(rgb[1], rgb[2])) / s->target.pixels;
+    if (largest > job->film.max_component)
+        for (int c = 0; c < 3; ++c)
+            rgb[c] *= job->film.max_component / largest;
+    sr_film_splat(s->run->film, &job->filter, s->group, raster, rgb);
+}
+
+/* The path that goes with sample i of the pixel: all of them are points of one net, in the order of the samples. */
+static void aim(struct splatting *s, uint32_t pixel, uint32_t replicate, uint32_t i)
+{
+    uint64_t index = (uint64_t)i * ((uint64_t)s->run->film->width * s->run->film->height) + pixel;
+    s->target.sampler = sr_sampler_start(s->run->job->sampler, s->run->job->seed, UINT32_MAX, (uint32_t)(index >> 32), replicate, (uint32_t)index);
+}
+
+static void splat(const struct run *run, struct sr_worker *worker)
+{
+    const struct sr_render_job *job = run->job;
+    sr_u4 u = sr_sample4(&worker->target->sampler, SR_USE_FILM);
+    struct sr_wavelengths w = sr_wavelengths_draw(&run->response.law, job->jitter_lambda ? u[2] : 0.5f);
+    sr_wavelengths_know(&w, sr_scene_lights(job->scene)->white);
+    job->integrator.model->splat(job->integrator.self, job->scene, &w, worker);
+}
+
+static void find_middle(struct run *run)
+{
+    const struct sr_film_settings *f = &run->job->film;
+    struct sr_sensor_ray view;
+    sr_vec2 raster = {0.5f * (float)f->width, 0.5f * (float)f->height};
+    float share = run->job->jitter_pixel ? PIXEL_SHARE : 1;
+    run->has_middle = run->job->sensor.model->ray(run->job->sensor.self, raster, (sr_vec2){0.5f, 0.5f}, 0, &view);
+    run->middle = (struct sr_path_start){.ray = view.ray, .dodx = sr_scale(share, view.dodx), .dody = sr_scale(share, view.dody),
+                                         .dddx = sr_scale(share, view.dddx), .dddy = sr_scale(share, view.dddy)};
+}
+
+static struct splatting begin_splatting(struct run *run)
+{
+    const struct sr_sensor *sensor = &run->job->sensor;
+    return (struct splatting){.run = run, .target = {.self = sensor->self, .connect = sensor->model->connect, .density = sensor->model->density,
+                                                     .pixels = (float)run->film->width * (float)run->film->height,
+                                                     .middle = run->has_middle ? &run->middle : NULL, .add = add_splat}};
+}
+
 /* ---- one unit: a tile times a block ---- */
 
 static void remember_dropped(struct run *run, uint32_t x, uint32_t y, uint32_t replicate, uint32_t sample)
@@ -147,7 +211,7 @@ static bool is_cancelled(struct run *run)
 }
 
 /* The samples of one pixel in one block; false: cancelled, nothing of it counts. */
-static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, struct sr_film_block *b, struct sr_worker *worker)
+static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, struct sr_film_block *b, struct splatting *splatting, struct sr_worker *worker)
 {
     const struct sr_render_job *job = run->job;
     *b = (struct sr_film_block){0};
@@ -156,8 +220,16 @@ static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, 
     uint32_t begin = job->replicates ? 0 : (uint32_t)((uint64_t)job->spp * block / run->blocks);
     uint32_t end = job->replicates ? (uint32_t)per_replicate : (uint32_t)((uint64_t)job->spp * (block + 1) / run->blocks);
     struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, x, y, replicate, begin);
+    uint32_t pixel = (y - (uint32_t)job->film.y0) * run->film->width + x - (uint32_t)job->film.x0;
+    if (splatting)
+        splatting->group = block % run->film->splats->groups;
     for (uint32_t i = begin; i < end; ++i) {
         sampler.sample = i;
+        if (splatting) {
+            aim(splatting, pixel, replicate, i);
+            if (job->integrator.model->splat)
+                splat(run, worker);
+        }
         float rgb[3];
         struct sr_first_hit first;
         bool is_finite = sample_pixel(job, &run->response, x, y, &sampler, rgb, job->with_aov ? &first : NULL, worker);
@@ -167,9 +239,11 @@ static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, 
         if (job->with_aov)
             sr_film_block_add_first(b, &first);
         if ((i & 255) == 255 && is_cancelled(run))
-            return false;
+            break;
     }
-    return true;
+    if (splatting)
+        sr_film_splat_paths(run->film, splatting->group, b->n); // also those of a block that is given up: they have splatted
+    return b->n == end - begin;
 }
 
 static void tell_progress(struct run *run, double share)
@@ -192,7 +266,7 @@ static void tell_progress(struct run *run, double share)
     pthread_mutex_unlock(&run->progress_lock);
 }
 
-static bool do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratch, struct sr_worker *worker)
+static bool do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratch, struct splatting *splatting, struct sr_worker *worker)
 {
     uint32_t tiles = run->tiles_x * run->tiles_y, tile = (uint32_t)(unit % tiles), block = (uint32_t)(unit / tiles);
     uint32_t x0 = tile % run->tiles_x * run->tile, y0 = tile / run->tiles_x * run->tile;
@@ -202,7 +276,7 @@ static bool do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratc
     uint64_t paths = 0;
     for (uint32_t y = y0; y < y1; ++y)
         for (uint32_t x = x0; x < x1; ++x, ++done) {
-            if (is_cancelled(run) || !fill_block(run, left + x, top + y, block, &scratch[done], worker))
+            if (is_cancelled(run) || !fill_block(run, left + x, top + y, block, &scratch[done], splatting, worker))
                 return false;
             paths += scratch[done].n;
         }
@@ -228,10 +302,13 @@ static void work(void *context, int thread)
     struct run *run = context;
     struct sr_film_block *scratch = run->scratch + (size_t)thread * run->tile * run->tile;
     uint64_t units = (uint64_t)run->tiles_x * run->tiles_y * run->blocks;
-    struct sr_worker worker = {.log = thread == 0 ? run->job->log : NULL};
+    struct splatting splatting = begin_splatting(run);
+    splatting.target.user = &splatting;
+    bool splats = run->film->splats != NULL;
+    struct sr_worker worker = {.log = thread == 0 ? run->job->log : NULL, .target = splats ? &splatting.target : NULL};
     for (;;) {
         uint64_t unit = atomic_fetch_add_explicit(&run->next_unit, 1, memory_order_relaxed);
-        if (unit >= units || is_cancelled(run) || !do_unit(run, unit, scratch, &worker))
+        if (unit >= units || is_cancelled(run) || !do_unit(run, unit, scratch, splats ? &splatting : NULL, &worker))
             break;
         uint64_t done = atomic_fetch_add_explicit(&run->units_done, 1, memory_order_relaxed) + 1;
         atomic_fetch_add_explicit(&run->rays, worker.rays, memory_order_relaxed);
@@ -258,6 +335,14 @@ sr_status sr_render(const struct sr_render_job *job, struct sr_film **film, stru
     run.tiles_x = ((*film)->width + run.tile - 1) / run.tile;
     run.tiles_y = ((*film)->height + run.tile - 1) / run.tile;
     run.blocks = job->replicates ? job->replicates : job->spp < ORDINARY_BLOCKS ? job->spp : ORDINARY_BLOCKS;
+    if (job->integrator.model->splats && job->sensor.model->connect) {
+        if (sr_film_add_splats(*film, run.blocks, error) != SR_OK) {
+            sr_film_destroy(*film);
+            *film = NULL;
+            return error->status;
+        }
+        find_middle(&run);
+    }
     int threads = job->threads > 0 ? job->threads : sr_thread_count();
     struct sr_arena arena = {0};
     run.tile_blocks = sr_arena_alloc(&arena, (size_t)run.tiles_x * run.tiles_y * sizeof *run.tile_blocks);
@@ -277,7 +362,7 @@ sr_status sr_render(const struct sr_render_job *job, struct sr_film **film, stru
 
     *report = (struct sr_render_report){
         .render_s = sr_clock_s() - run.start_s, .paths = run.paths, .rays = run.rays, .shadow_rays = run.shadow_rays, .vertices = run.vertices,
-        .dropped = run.dropped, .dropped_x = run.first_dropped[0], .dropped_y = run.first_dropped[1],
+        .dropped = run.dropped + ((*film)->splats ? (*film)->splats->dropped : 0), .dropped_x = run.first_dropped[0], .dropped_y = run.first_dropped[1],
         .dropped_replicate = run.first_dropped[2], .dropped_sample = run.first_dropped[3], .is_complete = !run.cancelled,
     };
     sr_arena_free(&arena);

@@ -43,7 +43,9 @@ int render_check_outputs(const struct render_arguments *a, const struct sr_impor
 static double pixel_B(const struct sr_render_job *job)
 {
     double channels = job->with_aov ? 25 : 7;
-    return (double)sizeof(struct sr_film_pixel) + (job->with_aov ? (double)sizeof(struct sr_film_aov) : 0) +
+    uint32_t groups = job->replicates ? job->replicates : 4; // of splats
+    double splats_B = job->integrator.model->splats ? (double)sr_film_splats_B(groups < SR_SPLAT_GROUPS ? groups : SR_SPLAT_GROUPS) : 0;
+    return splats_B + (double)sizeof(struct sr_film_pixel) + (job->with_aov ? (double)sizeof(struct sr_film_aov) : 0) +
            2 * channels * sizeof(float);
 }
 

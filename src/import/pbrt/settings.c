@@ -236,7 +236,7 @@ static sr_status build_sampler(struct sr_pbrt_build *b)
 /* pbrt's estimators that are not here: without media they and path tracing estimate the same integral */
 static bool is_done_by_path(const char *name)
 {
-    static const char *const names[] = {"volpath", "bdpt", "mlt", "sppm", "lightpath", "simplevolpath"};
+    static const char *const names[] = {"volpath", "mlt", "sppm", "simplevolpath"};
     for (size_t i = 0; i < sizeof names / sizeof *names; ++i)
         if (strcmp(name, names[i]) == 0)
             return true;
