@@ -9,6 +9,8 @@
 #include "film/film.h"
 #include "image/image.h"
 #include "integrator/integrator.h"
+#include "meter/meter.h"
+#include "quantity/quantity.h"
 #include "sensor/sensor.h"
 
 #include <stdatomic.h>
@@ -60,7 +62,45 @@ sr_status sr_render(const struct sr_render_job *job, struct sr_film **film, stru
 bool sr_render_sample(const struct sr_render_job *job, uint32_t x, uint32_t y, uint32_t replicate, uint32_t sample, float rgb[3],
                       struct sr_first_hit *first, struct sr_worker *worker);
 
-/* Irradiance at p on a surface element with normal n, with standard uncertainties from independent replicates. */
+/* ---- measuring ---- */
+
+struct sr_measure_settings {
+    uint64_t samples;    // in all, rounded up to whole replicates; 0: 65536; with a target: the most
+    uint32_t replicates; // independently scrambled nets, for Student's interval; 0: 16, else 2 or more
+    double error;        // [1] relative expanded uncertainty (95 %) to reach; 0: none
+    double time_s;       // [s] that it may take, about; 0: as long as it takes
+    enum sr_system system; // whose uncertainty is looked at
+    uint32_t stream;     // which random numbers: another for each meter that is to be independent
+    struct sr_spectrometer spectrometer; // count 0: none
+};
+
+enum { SR_MEASURE_REMARKS = 6 };
+
+/* What a meter reads. The estimate is that of the last round alone, whose size was settled before it began, so that neither
+ * a target nor a limit of time biases it. */
+struct sr_measurement {
+    struct sr_quantity value[SR_SYSTEM_COUNT]; // over the job's wavelengths
+    struct sr_quantity colour[SR_COLOUR_COUNT]; // u by the jackknife; X Y Z as the photopic value, CCT in K
+    struct sr_quantity *spectrum; // of bins; NULL: none
+    uint64_t samples, hits, dropped; // of the last round; hits: found light; dropped: not finite, count as nothing
+    uint64_t pilot_samples;          // of the rounds before it
+    double largest_share;            // [1] of the largest sample in the sum of all
+    double elapsed_s;
+    bool is_complete;                // false: cancelled
+    bool is_on_target;               // true also where there was none
+    uint32_t remark_count;
+    char remarks[SR_MEASURE_REMARKS][400]; // sentences about what is not as it should be
+};
+
+/* Measures one meter. Spectra are kept in the arena. Fails for lack of memory or for settings that make no sense; cancelled:
+ * SR_CANCELLED, and the result is what there is (not a number, where that is nothing). */
+sr_status sr_measure(const struct sr_render_job *job, const struct sr_meter *meter, const struct sr_measure_settings *settings, struct sr_arena *arena,
+                     struct sr_measurement *out, struct sr_error *error);
+/* A map, as an image with the channels Y (in the settings' system) and SE.Y; samples are those of each cell. */
+sr_status sr_measure_map(const struct sr_render_job *job, const struct sr_meter *meter, const struct sr_measure_settings *settings,
+                         struct sr_image **image, struct sr_error *error);
+
+/* A thin case: irradiance at p on a surface element with normal n. */
 struct sr_irradiance {
     double E_v, E_v_error; // [lx]
     double E_e, E_e_error; // [W/m^2] over the job's wavelength range

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: MIT */
+/* What the files that measure share: sums of samples, replicate by replicate. */
+#ifndef SR_RENDER_MEASURE_H
+#define SR_RENDER_MEASURE_H
+
+#include "render/render.h"
+
+/* Of one sample, and sums of them: the systems, then X and Z (Y is the photopic one), then the bins of a spectrum. */
+enum { MEASURE_X = SR_SYSTEM_COUNT, MEASURE_Z, MEASURE_BINS };
+
+struct measure_sums {
+    uint64_t samples, hits, dropped; // hits: samples that found light; dropped: not finite
+    double largest, total;           // of |sample| in the system that is looked at
+    double *channels;                // of each replicate
+};
+
+struct measuring {
+    const struct sr_render_job *job;
+    const struct sr_meter *meter;
+    const struct sr_measure_settings *settings;
+    uint32_t replicates, channels;
+    uint32_t stream, round; // which random numbers
+    uint32_t cell;          // of a map; UINT32_MAX: no map
+};
+
+/* One sample: adds to channels; what it was in the system that is looked at. false: not finite, and not added. */
+bool measure_sample(const struct measuring *m, uint32_t replicate, uint32_t sample, struct sr_worker *worker, double *channels, double *looked_at,
+                    bool *is_hit);
+/* Adds samples [begin, end) of a replicate; false: cancelled, the sums are of no use. */
+bool measure_run(const struct measuring *m, uint32_t replicate, uint64_t begin, uint64_t end, struct measure_sums *sums);
+bool measure_is_cancelled(const struct sr_render_job *job);
+
+/* What there is to say about a finished measurement; where nothing has been found, readings become bounds. */
+void measure_remarks(const struct measuring *m, struct sr_measurement *out);
+
+#endif

@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: MIT */
+/* One sample of a meter: a point of it, a direction, what arrives.
+ *
+ *     reading = INTEGRAL INTEGRAL response(x, wi) L(x, wi) dwi dA
+ *
+ * estimated twice, by directions in proportion to the response and by directions toward a light, weighed by their densities
+ * (Veach 1997, power heuristic). An estimator that does not know receivers is asked along the first kind alone. */
+#include "render/measure.h"
+
+/* The numbers of a sample beside those of its bounces, far from their groups. */
+enum { USE_PLACE = 1 << 24 };
+
+/* Light straight from a light: response L / pdf, with its weight. */
+static sr_spectrum direct(const struct measuring *m, const struct sr_meter_place *at, sr_u4 u, const struct sr_wavelengths *w, struct sr_worker *worker)
+{
+    const struct sr_scene *scene = m->job->scene;
+    const struct sr_lights *lights = sr_scene_lights(scene);
+    uint32_t index;
+    float pmf;
+    struct sr_light_sample l;
+    if (!sr_lights_pick(lights, &at->x, u[2], &index, &pmf) || !sr_light_draw(lights->lights[index], &at->x, (sr_vec2){u[0], u[1]}, w, &l))
+        return SR_BLACK;
+    sr_vec3 wi = sr_to_local(&at->frame, l.wi);
+    float response = m->meter->model->response(m->meter->self, wi), pdf = pmf * l.pdf;
+    if (response == 0 || !sr_unoccluded(scene, &at->x, &l, worker))
+        return SR_BLACK;
+    return l.L * (response * (l.is_delta ? 1 : sr_mis_weight(pdf, m->meter->model->pdf(m->meter->self, wi))) / pdf);
+}
+
+static sr_spectrum estimate(const struct measuring *m, const struct sr_sampler *sampler, struct sr_wavelengths *w, struct sr_worker *worker)
+{
+    const struct sr_meter_model *model = m->meter->model;
+    const void *self = m->meter->self;
+    const struct sr_integrator *integrator = &m->job->integrator;
+    sr_u4 u, u_light, u_place = sr_sample4(sampler, USE_PLACE);
+    sr_sample8(sampler, SR_USE_FILM, &u, &u_light);
+    *w = sr_wavelengths_sample(m->job->lambda, m->job->jitter_lambda ? u_place[2] : 0.5f);
+    sr_wavelengths_know(w, sr_scene_lights(m->job->scene)->white);
+    struct sr_meter_place at;
+    sr_vec2 where = {u_place[0], u_place[1]};
+    if (!(m->cell == UINT32_MAX ? model->place(self, where, &at) : model->place_in(self, m->cell, where, &at)))
+        return SR_BLACK;
+    at.x.time = u_place[3];
+    bool is_ray = model->is_ray && model->is_ray(self), aims = integrator->model->knows_receivers && !is_ray;
+    sr_vec3 wi;
+    float pdf = model->sample(self, u, &wi);
+    sr_spectrum sum = SR_BLACK;
+    if (aims)
+        sum = direct(m, &at, u_light, w, worker);
+    float response = pdf > 0 ? model->response(self, wi) : 0;
+    if (response != 0) {
+        struct sr_path_start start = {.ray = sr_leave(&at.x, sr_to_world(&at.frame, wi)), .receiver = aims ? &at.x : NULL, .pdf = pdf};
+        sum += integrator->model->L(integrator->self, m->job->scene, &start, sampler, w, NULL, worker) * (response / pdf);
+    }
+    return sum * at.weight;
+}
+
+bool measure_sample(const struct measuring *m, uint32_t replicate, uint32_t sample, struct sr_worker *worker, double *channels, double *looked_at, bool *is_hit)
+{
+    const struct sr_render_job *job = m->job;
+    struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, m->stream, UINT32_MAX - m->round, replicate, sample);
+    struct sr_wavelengths w;
+    sr_spectrum X = estimate(m, &sampler, &w, worker);
+    *is_hit = sr_spectrum_any(X != 0.0f);
+    *looked_at = 0;
+    if (!*is_hit)
+        return true;
+    double readings[SR_SYSTEM_COUNT];
+    sr_observe(X, &w, readings);
+    struct sr_xyz xyz = sr_spectrum_to_xyz(X, &w);
+    *looked_at = fabs(readings[m->settings->system]);
+    if (!sr_spectrum_is_finite(X) || !isfinite(*looked_at))
+        return false;
+    for (int i = 0; i < SR_SYSTEM_COUNT; ++i)
+        channels[i] += readings[i];
+    channels[MEASURE_X] += (double)xyz.x;
+    channels[MEASURE_Z] += (double)xyz.z;
+    if (m->settings->spectrometer.count)
+        sr_spectrometer_add(&m->settings->spectrometer, X, &w, channels + MEASURE_BINS);
+    return true;
+}
+
+bool measure_is_cancelled(const struct sr_render_job *job)
+{
+    return job->cancel && atomic_load_explicit(job->cancel, memory_order_relaxed);
+}
+
+bool measure_run(const struct measuring *m, uint32_t replicate, uint64_t begin, uint64_t end, struct measure_sums *sums)
+{
+    struct sr_worker worker = {0};
+    for (uint64_t i = begin; i < end; ++i) {
+        double looked_at;
+        bool is_hit;
+        if (measure_sample(m, replicate, (uint32_t)i, &worker, sums->channels, &looked_at, &is_hit)) {
+            sums->hits += is_hit;
+            sums->total += looked_at;
+            sums->largest = fmax(sums->largest, looked_at);
+        } else
+            ++sums->dropped;
+        ++sums->samples;
+        if ((i & 63) == 63 && measure_is_cancelled(m->job))
+            return false;
+    }
+    return true;
+}
