@@ -11,6 +11,7 @@
 static void release(struct sr_pbrt_build *b)
 {
     sr_pbrt_images_free(b);
+    sr_array_free(&b->named_shapes);
     sr_array_free(&b->spectra);
     sr_array_free(&b->late_textures);
     sr_arena_free(&b->scratch);
@@ -34,6 +35,8 @@ static sr_status describe(struct sr_pbrt_build *b, enum sr_light_choice *choice)
         status = sr_pbrt_build_lights(b);
     if (status == SR_OK)
         status = sr_pbrt_build_shapes(b);
+    if (status == SR_OK)
+        status = sr_pbrt_build_meters(b);
     if (status == SR_OK)
         status = sr_pbrt_finish_textures(b);
     return status;

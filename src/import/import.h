@@ -5,6 +5,7 @@
 
 #include "film/film.h"
 #include "integrator/integrator.h"
+#include "meter/meter.h"
 #include "scene/scene.h"
 #include "sensor/sensor.h"
 
@@ -37,6 +38,8 @@ struct sr_import_result {
     uint32_t spp, seed;
     bool jitter_pixel, jitter_lambda;
     enum sr_units units; // SR_UNITS_PHOTOMETRIC or SR_UNITS_SI
+    const struct sr_meter *meters; // of the file, in its order; each has a name
+    uint32_t meter_count;
     uint64_t hash; // of all bytes that were read: scene files, meshes, images
     double read_s; // [s] reading and describing, without building
 };

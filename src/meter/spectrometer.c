@@ -31,7 +31,7 @@ void sr_spectrometer_add(const struct sr_spectrometer *s, sr_spectrum X, const s
             continue;
         double lambda = (double)w->lambda[i], x = (double)(X[i] / w->pdf[i]) * norm;
         double from = ceil((lambda - reach - s->first) / s->step), to = floor((lambda + reach - s->first) / s->step);
-        for (double k = sr_max(from, 0); k <= to && k < s->count; ++k) {
+        for (double k = fmax(from, 0); k <= to && k < s->count; ++k) {
             double d = fabs(lambda - s->first - k * s->step);
             bins[(uint32_t)k] += is_triangle ? x * fmax(0, 1 - d / reach) : x;
         }

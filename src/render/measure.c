@@ -68,13 +68,24 @@ static void run_round(const struct measuring *m, uint64_t n, struct measure_sums
 
 /* ---- readings ---- */
 
+/* What float arithmetic leaves of a value's digits, as a standard uncertainty of type B: 1e-6 of it. */
+static struct sr_quantity with_rounding(struct sr_quantity q, double rounding)
+{
+    double u[2] = {q.u, rounding}, degrees[2] = {q.degrees, INFINITY};
+    double effective = floor(sr_effective_degrees(u, degrees, 2)); // GUM G.4.1: to the next lower integer
+    q.degrees = effective < 1e4 ? effective : INFINITY;
+    q.u = hypot(q.u, rounding);
+    return q;
+}
+
 static struct sr_quantity reading_of(const struct measuring *m, const struct measure_sums *total, uint32_t channel, struct sr_unit unit)
 {
     struct sr_tally tally = {0};
     double n = (double)total->samples / m->replicates;
     for (uint32_t r = 0; r < m->replicates; ++r)
         sr_tally_add(&tally, total->channels[(size_t)r * m->channels + channel] / n);
-    return sr_quantity_of_tally(&tally, unit);
+    struct sr_quantity q = sr_quantity_of_tally(&tally, unit);
+    return with_rounding(q, 1e-6 * fabs(q.value));
 }
 
 /* Ratios of X, Y, Z: from the sums of all replicates, with the uncertainty of the jackknife (Quenouille 1956, Tukey 1958). */
@@ -99,9 +110,11 @@ static void read_colour(const struct measuring *m, const struct measure_sums *to
     for (int i = 0; i < 3; ++i)
         c[i] = all[i] / (n * R);
     sr_colour_of(c);
-    for (int i = 0; i < SR_COLOUR_COUNT; ++i)
-        out->colour[i] = (struct sr_quantity){.value = c[i], .u = sqrt(m2[i] * (R - 1) / R), .degrees = R - 1,
-                                              .unit = i <= SR_COLOUR_Z ? out->value[SR_PHOTOPIC].unit : (struct sr_unit){0}};
+    for (int i = 0; i < SR_COLOUR_COUNT; ++i) {
+        struct sr_quantity q = {.value = c[i], .u = sqrt(m2[i] * (R - 1) / R), .degrees = R - 1,
+                                .unit = i <= SR_COLOUR_Z ? out->value[SR_PHOTOPIC].unit : (struct sr_unit){.second = 0}};
+        out->colour[i] = with_rounding(q, i == SR_COLOUR_DUV ? 1e-6 : i == SR_COLOUR_CCT ? 1e-5 * c[i] : 1e-6 * fabs(c[i]));
+    }
 }
 
 static void read_all(const struct measuring *m, const struct measure_sums *total, struct sr_measurement *out)

@@ -29,6 +29,13 @@ struct sr_pbrt_built_material {
     bool is_being_made, is_made;
 };
 
+/* A shape with a name, for meters; several may have the same. */
+struct sr_pbrt_named_shape {
+    const char *name;
+    struct sr_shape shape;
+    bool is_of_object;
+};
+
 /* Textures of textures and mixes of mixes: rendering goes down as deep. */
 enum { SR_PBRT_MAX_DEPTH = 64 };
 
@@ -45,6 +52,7 @@ struct sr_pbrt_build {
     uint64_t hash;
     int depth; // of textures and materials being made
 
+    struct sr_array named_shapes;             // struct sr_pbrt_named_shape, in the order of the file
     struct sr_array images;                   // struct sr_pbrt_image
     struct sr_array spectra;                  // struct sr_pbrt_spectrum_file
     struct sr_array late_textures;            // struct sr_pbrt_late_texture
@@ -106,6 +114,7 @@ sr_status sr_pbrt_build_lights(struct sr_pbrt_build *b);
 sr_status sr_pbrt_emission(struct sr_pbrt_build *b, uint32_t area_light1, float area,
                            const struct sr_light_emission **out);
 sr_status sr_pbrt_build_shapes(struct sr_pbrt_build *b);
+sr_status sr_pbrt_build_meters(struct sr_pbrt_build *b); // after the shapes
 sr_status sr_pbrt_build_settings(struct sr_pbrt_build *b, enum sr_light_choice *choice);
 sr_status sr_pbrt_refuse_medium(struct sr_pbrt_build *b, const char *medium, struct sr_location where);
 

@@ -87,6 +87,7 @@ struct sr_pbrt_shape {
     bool reverse_orientation;
     const char *inside, *outside; // media; "" or NULL: none
     struct sr_location medium_where;
+    const char *name; // of "#@ Name", or NULL
 };
 
 struct sr_pbrt_light {
@@ -152,6 +153,7 @@ struct sr_pbrt_description {
     struct sr_array shapes;          // struct sr_pbrt_shape
     struct sr_array objects;         // struct sr_pbrt_object
     struct sr_array instances;       // struct sr_pbrt_instance
+    struct sr_array meters;          // struct sr_pbrt_entity
 
     struct sr_pbrt_names object_names, material_names, medium_names, float_textures, spectrum_textures;
 

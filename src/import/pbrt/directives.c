@@ -335,7 +335,9 @@ static sr_status read_shape(struct sr_pbrt_parser *p)
                                     .reverse_orientation = s->reverse_orientation,
                                     .inside = s->inside,
                                     .outside = s->outside,
-                                    .medium_where = s->medium_where};
+                                    .medium_where = s->medium_where,
+                                    .name = p->shape_name};
+    p->shape_name = NULL;
     return sr_pbrt_read_entity(p, "the name of a kind of shape", s->attributes[SR_PBRT_OF_SHAPE], &shape->entity);
 }
 
@@ -457,5 +459,31 @@ const struct sr_pbrt_directive sr_pbrt_directives[] = {
     {"Option", SR_PBRT_IN_OPTIONS, read_option},
     {"WorldBegin", SR_PBRT_IN_OPTIONS, read_world_begin},
     {"WorldEnd", SR_PBRT_IN_WORLD, read_world_end},
+    {NULL, 0, NULL},
+};
+
+/* ---- comments that are meant for this program ---- */
+
+static sr_status read_meter(struct sr_pbrt_parser *p)
+{
+    struct sr_pbrt_entity *meter = sr_array_push(&p->d->meters, sizeof *meter);
+    if (!meter)
+        return no_memory(p);
+    if (p->object1)
+        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "Meter inside of an object: expected outside");
+    return sr_pbrt_read_entity(p, "the name of a kind of meter", no_defaults, meter);
+}
+
+/* The name of the next shape, by which a meter finds it. */
+static sr_status read_name(struct sr_pbrt_parser *p)
+{
+    sr_status status = sr_pbrt_read_string(p, "a name for the next shape", &p->shape_name);
+    p->shape_name_where = p->where;
+    return status;
+}
+
+const struct sr_pbrt_directive sr_pbrt_annotations[] = {
+    {"Meter", SR_PBRT_IN_WORLD, read_meter},
+    {"Name", SR_PBRT_IN_WORLD, read_name},
     {NULL, 0, NULL},
 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Words, strings and brackets of a pbrt file in memory; comments run from # to the end of the line. "#@" and a blank begin no
- * comment but are blanks themselves: what follows are directives that are ours alone, so that other readers skip them. */
+/* Words, strings and brackets of a pbrt file in memory; comments run from # to the end of the line. "#@" and a blank begin
+ * comments that are kept: what follows are directives that are ours alone, so that other readers skip them. */
 #include "import/pbrt/lexer.h"
 
 #include "import/number.h"
@@ -26,6 +26,38 @@ struct sr_location sr_pbrt_lexer_number_where(const struct sr_pbrt_lexer *lexer)
     return location(lexer, lexer->number);
 }
 
+struct sr_pbrt_lexer sr_pbrt_lexer_start_annotation(const struct sr_pbrt_lexer *lexer, const struct sr_pbrt_annotation *a)
+{
+    return (struct sr_pbrt_lexer){.file = lexer->file, .p = a->p, .end = lexer->end, .line_start = a->line_start, .line = a->line,
+                                  .arena = lexer->arena, .is_annotation = true};
+}
+
+static bool is_annotation(const char *p)
+{
+    return p[0] == '#' && p[1] == '@' && (p[2] == ' ' || p[2] == '\t');
+}
+
+/* p at the # of a comment: the character before its line's end. */
+static const char *skip_comment(struct sr_pbrt_lexer *l, const char *p)
+{
+    if (l->annotations && is_annotation(p)) {
+        struct sr_pbrt_annotation *a = sr_array_push(l->annotations, sizeof *a);
+        if (a)
+            *a = (struct sr_pbrt_annotation){p + 2, l->line_start, l->line};
+    }
+    const char *newline = memchr(p, '\n', (size_t)(l->end - p));
+    return newline ? newline - 1 : l->end - 1;
+}
+
+/* p at a line's end within an annotation: behind the #@ of the next line, or NULL where there is none. */
+static const char *next_annotation(const char *p)
+{
+    ++p;
+    while (*p == ' ' || *p == '\t' || *p == '\r')
+        ++p;
+    return is_annotation(p) ? p + 2 : NULL;
+}
+
 /* to the next character that means something */
 static inline void skip_space(struct sr_pbrt_lexer *l)
 {
@@ -35,13 +67,14 @@ static inline void skip_space(struct sr_pbrt_lexer *l)
         if (c == ' ' || c == '\t' || c == '\r')
             continue;
         if (c == '\n') {
+            const char *next = SR_UNLIKELY(l->is_annotation) ? next_annotation(p) : p + 1;
+            if (!next)
+                break;
             ++l->line;
             l->line_start = p + 1;
-        } else if (c == '#' && p[1] == '@' && (p[2] == ' ' || p[2] == '\t')) {
-            ++p;
+            p = next - 1;
         } else if (c == '#') {
-            const char *newline = memchr(p, '\n', (size_t)(l->end - p));
-            p = newline ? newline - 1 : l->end - 1;
+            p = skip_comment(l, p);
         } else
             break;
     }
@@ -129,6 +162,10 @@ sr_status sr_pbrt_lexer_next(struct sr_pbrt_lexer *l, struct sr_pbrt_token *toke
         return SR_OK;
     case '"':
         return lex_string(l, token, error);
+    case '\n': // of an annotation
+        token->kind = SR_PBRT_END;
+        token->length = 0;
+        return SR_OK;
     case 0:
         if (l->p < l->end)
             return sr_fail(error, SR_ERROR_INPUT, "%s:%d:%d: a NUL byte in the text: this is not a pbrt file", l->file,

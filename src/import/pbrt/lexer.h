@@ -29,10 +29,20 @@ struct sr_pbrt_lexer {
     struct sr_arena *arena; // for strings with escapes
     bool has_next;          // one token has been looked at and not taken
     struct sr_pbrt_token next_token;
+    bool is_annotation;           // it reads the words of comments "#@ …" alone, and ends with the last of them
+    struct sr_array *annotations; // NULL, or struct sr_pbrt_annotation: where comments "#@" have been passed
+};
+
+/* A comment that begins with #@ says something to this program that pbrt does not know. */
+struct sr_pbrt_annotation {
+    const char *p, *line_start; // behind the #@
+    int line;
 };
 
 /* text must be followed by a NUL and live as long as the tokens. */
 struct sr_pbrt_lexer sr_pbrt_lexer_start(const char *file, const char *text, size_t size, struct sr_arena *arena);
+/* Over the words of that comment, and of the comments #@ on the lines right below it. */
+struct sr_pbrt_lexer sr_pbrt_lexer_start_annotation(const struct sr_pbrt_lexer *lexer, const struct sr_pbrt_annotation *a);
 /* Each fills *token; the error bears file:line:column. */
 sr_status sr_pbrt_lexer_next(struct sr_pbrt_lexer *lexer, struct sr_pbrt_token *token, struct sr_error *error);
 sr_status sr_pbrt_lexer_peek(struct sr_pbrt_lexer *lexer, struct sr_pbrt_token *token, struct sr_error *error);

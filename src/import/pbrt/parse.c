@@ -76,12 +76,34 @@ sr_status sr_pbrt_read_entity(struct sr_pbrt_parser *p, const char *expected, st
 
 /* ---- directives ---- */
 
+static void copy_word(const struct sr_pbrt_token *token, char word[64])
+{
+    size_t n = token->length < 63 ? token->length : 63;
+    memcpy(word, token->text, n);
+    word[n] = 0;
+}
+
+static const struct sr_pbrt_directive *find_directive(const struct sr_pbrt_directive *d, const struct sr_pbrt_token *token)
+{
+    while (d->word && (strlen(d->word) != token->length || memcmp(d->word, token->text, token->length) != 0))
+        ++d;
+    return d->word ? d : NULL;
+}
+
+static sr_status check_block(struct sr_pbrt_parser *p, const struct sr_pbrt_directive *d, const struct sr_pbrt_token *token)
+{
+    if (d->block & (p->d->has_world ? SR_PBRT_IN_WORLD : SR_PBRT_IN_OPTIONS))
+        return SR_OK;
+    return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT,
+                        p->d->has_world ? "%s may not stand after WorldBegin: expected before it"
+                                        : "%s may not stand before WorldBegin: expected after it",
+                        d->word);
+}
+
 static sr_status unknown_directive(struct sr_pbrt_parser *p, const struct sr_pbrt_token *token)
 {
     char word[64], buffer[160];
-    size_t n = token->length < sizeof word - 1 ? token->length : sizeof word - 1;
-    memcpy(word, token->text, n);
-    word[n] = 0;
+    copy_word(token, word);
     double number;
     if (sr_pbrt_token_number(token, &number))
         return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT,
@@ -101,32 +123,91 @@ static sr_status read_directive(struct sr_pbrt_parser *p, const struct sr_pbrt_t
                             "%s%.*s%s stands alone: expected a directive, such as Shape",
                             token->kind == SR_PBRT_STRING ? "\"" : "", token->length > 60 ? 60 : (int)token->length,
                             token->text, token->kind == SR_PBRT_STRING ? "\"" : "");
-    const struct sr_pbrt_directive *d = sr_pbrt_directives;
-    while (d->word && (strlen(d->word) != token->length || memcmp(d->word, token->text, token->length) != 0))
-        ++d;
-    if (!d->word)
+    const struct sr_pbrt_directive *d = find_directive(sr_pbrt_directives, token);
+    if (!d)
         return unknown_directive(p, token);
-    if (!(d->block & (p->d->has_world ? SR_PBRT_IN_WORLD : SR_PBRT_IN_OPTIONS)))
-        return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT,
-                            p->d->has_world ? "%s may not stand after WorldBegin: expected before it"
-                                            : "%s may not stand before WorldBegin: expected after it",
-                            d->word);
+    if (check_block(p, d, token) != SR_OK)
+        return p->error->status;
     p->directive = d->word;
     p->where = token->where;
     return d->read(p);
+}
+
+/* ---- comments that are meant for this program ---- */
+
+/* The rest of what an unknown word may have for arguments: to the next word that begins a line. */
+static sr_status skip_annotation(struct sr_pbrt_lexer *lexer, int line, struct sr_error *error)
+{
+    struct sr_pbrt_token token;
+    sr_status status;
+    double number;
+    while ((status = sr_pbrt_lexer_peek(lexer, &token, error)) == SR_OK && token.kind != SR_PBRT_END) {
+        if (token.kind == SR_PBRT_WORD && token.where.line != line && !sr_pbrt_token_number(&token, &number))
+            break;
+        line = token.where.line;
+        sr_pbrt_lexer_next(lexer, &token, error);
+    }
+    return status;
+}
+
+static sr_status read_annotation(struct sr_pbrt_parser *p, const struct sr_pbrt_token *token)
+{
+    const struct sr_pbrt_directive *d = token->kind == SR_PBRT_WORD ? find_directive(sr_pbrt_annotations, token) : NULL;
+    if (!d) {
+        char word[64], buffer[160];
+        copy_word(token, word);
+        struct sr_pbrt_suggestion s = {.word = word};
+        for (d = sr_pbrt_annotations; d->word; ++d)
+            sr_pbrt_suggest(&s, d->word);
+        sr_pbrt_warn(p->d, token->where, "#@ %s is not known%s; it stays a comment", word, sr_pbrt_suggestion_text(&s, buffer));
+        return skip_annotation(p->lexer, token->where.line, p->error);
+    }
+    if (check_block(p, d, token) != SR_OK)
+        return p->error->status;
+    p->directive = d->word;
+    p->where = token->where;
+    return d->read(p);
+}
+
+/* The comments #@ that have been passed since the last directive. */
+static sr_status read_annotations(struct sr_pbrt_parser *p)
+{
+    struct sr_array passed = p->annotations; // lexers of the comments add none
+    struct sr_pbrt_lexer *outer = p->lexer;
+    const char *done = NULL;
+    sr_status status = SR_OK;
+    for (size_t i = 0; i < passed.count && status == SR_OK; ++i) {
+        const struct sr_pbrt_annotation *a = SR_PBRT_AT(passed, struct sr_pbrt_annotation, i);
+        if (done && a->p <= done)
+            continue;
+        struct sr_pbrt_lexer lexer = sr_pbrt_lexer_start_annotation(outer, a);
+        struct sr_pbrt_token token;
+        p->lexer = &lexer;
+        while ((status = sr_pbrt_lexer_next(&lexer, &token, p->error)) == SR_OK && token.kind != SR_PBRT_END)
+            if ((status = read_annotation(p, &token)) != SR_OK)
+                break;
+        done = lexer.p;
+    }
+    p->lexer = outer;
+    p->annotations.count = 0;
+    return status;
 }
 
 static sr_status read_text(struct sr_pbrt_parser *p, const char *path, const char *text, size_t size)
 {
     struct sr_pbrt_lexer lexer = sr_pbrt_lexer_start(path, text, size, &p->d->words), *outer = p->lexer;
     struct sr_pbrt_token token;
+    lexer.annotations = &p->annotations; // empty: those before an Include have been read
     p->lexer = &lexer;
     p->d->text_B += size;
     p->d->hash = sr_pbrt_hash(p->d->hash, text, size);
     sr_status status;
-    while ((status = sr_pbrt_lexer_next(&lexer, &token, p->error)) == SR_OK && token.kind != SR_PBRT_END)
-        if ((status = read_directive(p, &token)) != SR_OK)
+    while ((status = sr_pbrt_lexer_next(&lexer, &token, p->error)) == SR_OK) {
+        if (p->annotations.count)
+            status = read_annotations(p);
+        if (status != SR_OK || token.kind == SR_PBRT_END || (status = read_directive(p, &token)) != SR_OK)
             break;
+    }
     p->lexer = outer;
     return status;
 }
@@ -229,6 +310,9 @@ static sr_status finish(struct sr_pbrt_parser *p, sr_status status, const struct
     }
     if (status == SR_OK && !p->d->has_world)
         status = sr_fail(p->error, SR_ERROR_INPUT, "%s: the file ends before WorldBegin: expected a scene", file->path);
+    if (status == SR_OK && p->shape_name)
+        sr_pbrt_warn(p->d, p->shape_name_where, "#@ Name \"%s\": no shape comes after it", p->shape_name);
+    sr_array_free(&p->annotations);
     sr_array_free(&p->stack);
     sr_array_free(&p->coordinates);
     sr_pbrt_scratch_free(&p->scratch);

@@ -54,6 +54,9 @@ struct sr_pbrt_parser {
     uint32_t object1;            // being defined; 0: none
     uint32_t depth;              // of Include
     bool has_warned_transform, has_warned_motion;
+    struct sr_array annotations;     // struct sr_pbrt_annotation of the file being read, not yet looked at
+    const char *shape_name;          // of "#@ Name", for the next shape
+    struct sr_location shape_name_where;
 };
 
 /* A directive: its word, where it may stand, what it does. The list ends with a NULL word. */
@@ -64,6 +67,7 @@ struct sr_pbrt_directive {
     sr_status (*read)(struct sr_pbrt_parser *parser);
 };
 extern const struct sr_pbrt_directive sr_pbrt_directives[];
+extern const struct sr_pbrt_directive sr_pbrt_annotations[]; // those of comments: "#@ Meter"
 
 /* The arguments of a directive. */
 sr_status sr_pbrt_read_string(struct sr_pbrt_parser *parser, const char *expected, const char **text);

@@ -297,6 +297,12 @@ static sr_status add_shape(struct adder *a, const struct sr_pbrt_shape *s, struc
     for (int i = 0; i < count; ++i) {
         def.shape = shapes[i];
         sr_scene_add_shape(b->result->scene, &def);
+        if (!s->name)
+            continue;
+        struct sr_pbrt_named_shape *named = sr_array_push(&b->named_shapes, sizeof *named);
+        if (!named)
+            return sr_pbrt_no_memory(b);
+        *named = (struct sr_pbrt_named_shape){s->name, shapes[i], s->object1 != 0};
     }
     const struct sr_shape_model *m = is_ply(s) ? NULL : shapes[0].model;
     sr_pbrt_warn_unused(b, &s->entity, m ? m->params : ply_params, common_params);
