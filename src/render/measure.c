@@ -72,7 +72,9 @@ static void run_round(const struct measuring *m, uint64_t n, struct measure_sums
 static struct sr_quantity with_rounding(struct sr_quantity q, double rounding)
 {
     double u[2] = {q.u, rounding}, degrees[2] = {q.degrees, INFINITY};
-    double effective = floor(sr_effective_degrees(u, degrees, 2)); // GUM G.4.1: to the next lower integer
+    if (!(rounding > 0))
+        return q;
+    double effective = floor(sr_effective_degrees(u, degrees, 2) + 1e-6); // GUM G.4.1: to the next lower integer
     q.degrees = effective < 1e4 ? effective : INFINITY;
     q.u = hypot(q.u, rounding);
     return q;
