@@ -122,6 +122,8 @@ TEST(spectra_that_look_otherwise_than_they_count_are_told_once)
     import(SI "WorldBegin\n" SKY("[360 1 830 1]"), SR_UNITS_PHOTOMETRIC, SR_UNITS_PHOTOMETRIC, SR_OK);
     t = import("#@ Option \"string units\" \"imperial\"\nWorldBegin\n", SR_UNITS_OF_SCENE, SR_UNITS_SI, SR_ERROR_INPUT);
     EXPECT(strstr(t.text, "units.pbrt:1:") && strstr(t.text, "expected \"photometric\" or \"si\""));
-    t = import("WorldBegin\n#@ Nonsense \"a\"\n", SR_UNITS_OF_SCENE, SR_UNITS_SI, SR_ERROR_INPUT);
-    EXPECT(strstr(t.text, "units.pbrt:2:4") && strstr(t.text, "unknown directive Nonsense"));
+    t = import("#@ Opton \"string units\" \"si\"\nWorldBegin\n", SR_UNITS_OF_SCENE, SR_UNITS_PHOTOMETRIC, SR_OK);
+    EXPECT(t.warnings == 2 && strstr(t.text, "the scene is empty")); // the misspelt word is told of first
+    t = import("#@ Opton \"string units\" \"si\"\nWorldBegin\n" SKY("\"stdillum-D65\""), SR_UNITS_OF_SCENE, SR_UNITS_PHOTOMETRIC, SR_OK);
+    EXPECT(t.warnings == 1 && strstr(t.text, "units.pbrt:1:4") && strstr(t.text, "did you mean \"Option\"?"));
 }

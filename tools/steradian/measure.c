@@ -18,7 +18,7 @@ static const char help[] =
     "\n"
     "  -m, --meter NAME       this meter only (may be repeated; default: all)\n"
     "      --list             the meters of the scene, without measuring\n"
-    "      --quantity LIST    radiometric, photopic (default), scotopic, cones-2, cones-10, photon, par, or all\n"
+    "      --quantity LIST    radiometric, photopic (default), scotopic, cones2, cones10, photon, par, or all\n"
     "      --spectrum LO:STEP:HI   also spectral readings at these wavelengths [nm]\n"
     "      --fwhm NM          width of their bandpass (default: STEP)\n"
     "      --bandpass KIND    triangular (default) or rectangular\n"
@@ -29,7 +29,8 @@ static const char help[] =
     "                         with --error or --time: the most\n"
     "      --replicates R     independently scrambled nets, 2 or more (default: 16)\n"
     "      --estimator NAME   (also --integrator) in place of the scene's: path, simplepath, randomwalk, …\n"
-    "      --seed S, --threads N, --sampler sobol|independent, --lambda LO,HI   as of steradian render\n"
+    "      --seed S, --threads N, --sampler sobol|independent, --lambda LO,HI, --units WORD\n"
+    "                         as of steradian render\n"
     "      --points           lines \"x y z nx ny nz\" [m] on standard input: irradiance there\n"
     "      --rays             lines \"x y z dx dy dz\" [m]: radiance that arrives from there\n"
     "                         out comes, for each line, the reading and its expanded uncertainty\n"
@@ -48,7 +49,7 @@ static const char help[] =
 
 enum {
     OPT_LIST = 256, OPT_QUANTITY, OPT_SPECTRUM, OPT_FWHM, OPT_BANDPASS, OPT_COLOUR, OPT_ERROR, OPT_TIME, OPT_SAMPLES, OPT_REPLICATES, OPT_ESTIMATOR,
-    OPT_SEED, OPT_THREADS, OPT_SAMPLER, OPT_LAMBDA, OPT_POINTS, OPT_RAYS, OPT_JSON,
+    OPT_SEED, OPT_THREADS, OPT_SAMPLER, OPT_LAMBDA, OPT_POINTS, OPT_RAYS, OPT_JSON, OPT_UNITS,
 };
 
 static const struct option long_options[] = {
@@ -69,6 +70,7 @@ static const struct option long_options[] = {
     {"threads", required_argument, NULL, OPT_THREADS},
     {"sampler", required_argument, NULL, OPT_SAMPLER},
     {"lambda", required_argument, NULL, OPT_LAMBDA},
+    {"units", required_argument, NULL, OPT_UNITS},
     {"points", no_argument, NULL, OPT_POINTS},
     {"rays", no_argument, NULL, OPT_RAYS},
     {"outfile", required_argument, NULL, 'o'},
@@ -183,6 +185,8 @@ static bool take_value(struct measure_arguments *a, int option, const char *name
     case OPT_SEED:
         a->has_seed = true;
         return command_parse_uint(c, name, text, 0, UINT32_MAX, &a->seed);
+    case OPT_UNITS:
+        return command_parse_units(c, text, &a->import.units);
     case OPT_THREADS:
         return command_parse_uint(c, name, text, 1, 1024, &a->threads);
     default: // lambda
@@ -337,9 +341,9 @@ static int choose(const struct measure_arguments *a, const struct sr_import_resu
     return 0;
 }
 
-static json_t *settings_json(const struct measure_arguments *a, const struct sr_render_job *job)
+static json_t *settings_json(const struct measure_arguments *a, const struct sr_render_job *job, enum sr_units units)
 {
-    return json_pack("{s:s, s:s, s:I, s:I, s:o, s:f, s:{s:f, s:f, s:s}}", "estimator", job->integrator.model->name, "sampler",
+    return json_pack("{s:s, s:s, s:s, s:I, s:I, s:o, s:f, s:{s:f, s:f, s:s}}", "units", units == SR_UNITS_SI ? "si" : "photometric", "estimator", job->integrator.model->name, "sampler",
                      job->sampler == SR_SAMPLER_SOBOL ? "sobol" : "independent", "seed", (json_int_t)job->seed, "replicates",
                      (json_int_t)(a->settings.replicates ? a->settings.replicates : 16), "target",
                      a->settings.error > 0 ? json_real(a->settings.error) : json_null(), "level", 0.95, "wavelengths", "min", (double)job->lambda.lo, "max",
@@ -416,7 +420,7 @@ static int measure_scene(const struct measure_arguments *a, const struct sr_impo
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)scene->hash);
     if (a->json)
         code = command_print_json("measure", json_pack("{s:s, s:o, s:s, s:b, s:o, s:o}", "version", SR_VERSION, "scene", command_json_text(a->scene), "scene_hash",
-                                                       hash, "complete", is_complete, "settings", settings_json(a, &job), "meters", list));
+                                                       hash, "complete", is_complete, "settings", settings_json(a, &job, scene->units), "meters", list));
     else
         json_decref(list);
     if (!is_complete || atomic_load(&render_interrupted)) {

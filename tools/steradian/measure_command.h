@@ -37,7 +37,6 @@ sr_status measure_spectrometer(const struct measure_arguments *a, const struct s
 /* measure_print.c */
 void measure_print(const struct measure_arguments *a, const struct sr_meter *meter, const struct sr_spectrometer *s, const struct sr_measurement *m, int width);
 json_t *measure_json(const struct measure_arguments *a, const struct sr_meter *meter, const struct sr_spectrometer *s, const struct sr_measurement *m);
-json_t *measure_quantity_json(const struct sr_quantity *q, const char *unit);
 
 /* measure_stream.c: lines from standard input; the exit code */
 int measure_stream(const struct measure_arguments *a, const struct sr_render_job *job);

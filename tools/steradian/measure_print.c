@@ -34,16 +34,6 @@ void measure_print(const struct measure_arguments *a, const struct sr_meter *met
 
 /* ---- JSON ---- */
 
-json_t *measure_quantity_json(const struct sr_quantity *q, const char *unit)
-{
-    char text[96];
-    double U = sr_quantity_expanded(q, 0.95);
-    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "value", command_json_number(q->value), "unit", command_json_text(unit ? unit : sr_unit_text(q->unit, text, sizeof text)),
-                     "standard_uncertainty", command_json_number(q->u), "degrees_of_freedom", command_json_number(q->degrees), "coverage_factor",
-                     command_json_number(U / q->u), "expanded_uncertainty", command_json_number(U), "upper_bound",
-                     q->upper > 0 ? command_json_number(q->upper) : json_null());
-}
-
 static json_t *spectrum_json(const struct sr_spectrometer *s, const struct sr_measurement *m)
 {
     json_t *lambda = json_array(), *value = json_array(), *u = json_array();
@@ -63,7 +53,7 @@ json_t *measure_json(const struct measure_arguments *a, const struct sr_meter *m
     json_t *readings = json_object(), *remarks = json_array();
     for (int i = 0; i < SR_SYSTEM_COUNT; ++i) {
         char symbol[64];
-        json_t *q = measure_quantity_json(&m->value[i], NULL);
+        json_t *q = command_json_measured(&m->value[i]);
         json_object_set_new(q, "symbol", command_json_text(measure_symbol(meter, (enum sr_system)i, symbol)));
         json_object_set_new(readings, sr_system_name((enum sr_system)i), q);
     }
@@ -77,7 +67,8 @@ json_t *measure_json(const struct measure_arguments *a, const struct sr_meter *m
     if (j && measure_wants_colour(a, meter)) {
         json_t *colour = json_object();
         for (int i = 0; i < SR_COLOUR_COUNT; ++i)
-            json_object_set_new(colour, sr_colour_names[i], measure_quantity_json(&m->colour[i], i == SR_COLOUR_CCT ? "K" : NULL));
+            json_object_set_new(colour, sr_colour_names[i], command_json_measured(&m->colour[i]));
+        json_object_set_new(json_object_get(colour, "CCT"), "unit", json_string("K"));
         json_object_set_new(j, "colour", colour);
     }
     if (j && s->count)

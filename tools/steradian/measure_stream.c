@@ -30,7 +30,7 @@ static void print_line(const struct measure_arguments *a, const struct sr_measur
         json_t *readings = json_object();
         for (int i = 0; i < SR_SYSTEM_COUNT; ++i)
             if (a->systems[i])
-                json_object_set_new(readings, sr_system_name((enum sr_system)i), measure_quantity_json(&m->value[i], NULL));
+                json_object_set_new(readings, sr_system_name((enum sr_system)i), command_json_measured(&m->value[i]));
         json_t *j = json_pack("{s:I, s:[f,f,f], s:[f,f,f], s:o, s:o}", "line", (json_int_t)number, "p_m", v[0], v[1], v[2],
                               a->input == MEASURE_RAYS ? "direction" : "normal", v[3], v[4], v[5], "readings", readings, "remark",
                               m->remark_count ? command_json_text(m->remarks[0]) : json_null());

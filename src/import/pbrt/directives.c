@@ -483,6 +483,7 @@ static sr_status read_name(struct sr_pbrt_parser *p)
 }
 
 const struct sr_pbrt_directive sr_pbrt_annotations[] = {
+    {"Option", SR_PBRT_IN_OPTIONS, read_option},
     {"Meter", SR_PBRT_IN_WORLD, read_meter},
     {"Name", SR_PBRT_IN_WORLD, read_name},
     {NULL, 0, NULL},
