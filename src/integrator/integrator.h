@@ -45,6 +45,17 @@ struct sr_path_start {
     float pdf;
 };
 
+/* A place that takes light in, with a weight: reading = integral response(wi) L(x, wi) dwi. Directions are local. */
+struct sr_receiver {
+    struct sr_point x;
+    struct sr_frame frame;
+    const void *self;
+    float (*response)(const void *self, sr_vec3 wi);
+    float (*sample)(const void *self, sr_u4 u, sr_vec3 *wi); // returns its density [1/sr]; 0: none
+    float (*pdf)(const void *self, sr_vec3 wi);              // [1/sr]
+    bool is_upper;                                           // response is 0 where wi.z < 0
+};
+
 struct sr_integrator_model {
     const char *name;
     const struct sr_param *params;
@@ -58,6 +69,9 @@ struct sr_integrator_model {
      * the numbers target->sampler. As many are wanted as samples in all. */
     bool splats;
     void (*splat)(const void *self, const struct sr_scene *scene, struct sr_wavelengths *w, struct sr_worker *worker); // or NULL
+    /* The reading of a receiver, estimated by the integrator's own strategies there, too. NULL: the meter's, and L. */
+    sr_spectrum (*gather)(const void *self, const struct sr_scene *scene, const struct sr_receiver *receiver, const struct sr_sampler *sampler,
+                          struct sr_wavelengths *w, struct sr_worker *worker);
     /* Once the parameters are known: checks them, computes what follows from them. NULL: nothing to do. */
     sr_status (*prepare)(void *self, struct sr_arena *arena, struct sr_error *error);
     /* One sentence: which light of this scene the estimator cannot find, so that it is missing from the result. NULL, or

@@ -4,7 +4,8 @@
  *     reading = INTEGRAL INTEGRAL response(x, wi) L(x, wi) dwi dA
  *
  * estimated twice, by directions in proportion to the response and by directions toward a light, weighed by their densities
- * (Veach 1997, power heuristic). An estimator that does not know receivers is asked along the first kind alone. */
+ * (Veach 1997, power heuristic). An estimator that does not know receivers is asked along the
+ * first kind alone; one that gathers does it all by itself. */
 #include "render/measure.h"
 
 /* The numbers of a sample beside those of its bounces, far from their groups. */
@@ -42,6 +43,11 @@ static sr_spectrum estimate(const struct measuring *m, const struct sr_sampler *
         return SR_BLACK;
     at.x.time = u_place[3];
     bool is_ray = model->is_ray && model->is_ray(self), aims = integrator->model->knows_receivers && !is_ray;
+    if (integrator->model->gather && !is_ray) {
+        bool is_upper = sr_length2(at.x.n) > 0 && model->response(self, (sr_vec3){0, 0, -1}) == 0; // a surface element, not its net flux
+        struct sr_receiver receiver = {at.x, at.frame, self, model->response, model->sample, model->pdf, is_upper};
+        return integrator->model->gather(integrator->self, m->job->scene, &receiver, sampler, w, worker) * at.weight;
+    }
     sr_vec3 wi;
     float pdf = model->sample(self, u, &wi);
     sr_spectrum sum = SR_BLACK;
