@@ -22,6 +22,8 @@ struct ies {
     sr_vec3 axis;                           // [1] local -z
     float factor;                           // [1] of the file's candelas, with the mean brightness of the spectrum
     float flux, choice;                     // [lm], [cd] of the peak
+    struct sr_photometry_guide guide;       // to draw directions where paths begin
+    float determinant;                      // of world to light: a transform that is no rotation squeezes solid angles
     float cos_reach;                        // of the cone around the axis beyond which there is no light
 };
 
@@ -58,6 +60,13 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     if (sr_light_normalise(&m->I, m->common.space, 1, error))
         return error->status;
     m->factor = (float)((double)m->scale * (m->power > 0 ? (double)m->power / flux : 1));
+    if (!sr_photometry_guide_build(p, arena, &m->guide))
+        return sr_fail(error, SR_ERROR_RESOURCE, "no memory for the density of %s", m->filename);
+    const struct sr_transform *t = &m->common.light_to_world;
+    sr_vec3 rows[3];
+    for (int i = 0; i < 3; ++i)
+        rows[i] = (sr_vec3){t->inverse[i][0], t->inverse[i][1], t->inverse[i][2]};
+    m->determinant = fabsf(sr_dot(rows[0], sr_cross(rows[1], rows[2])));
     double luminous = sr_spd_luminous_integral(&m->I);
     m->flux = (float)(luminous * (double)m->factor * flux);
     m->choice = (float)((double)(m->factor * sr_light_choice_weight(&m->I)) * peak);
@@ -87,6 +96,32 @@ static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u
     return true;
 }
 
+static void emit_pdf(const void *self, sr_vec3 n, sr_vec3 w, float *pdf_area, float *pdf_direction)
+{
+    (void)n;
+    const struct ies *m = self;
+    sr_vec3 d = sr_inverse_vector(&m->common.light_to_world, w);
+    float length = sr_length(d);
+    *pdf_area = 1;
+    *pdf_direction = sr_photometry_pdf(&m->guide, sr_scale(1 / length, d)) * m->determinant / (length * length * length);
+}
+
+static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w, struct sr_light_ray *ray)
+{
+    (void)u_place;
+    const struct ies *m = self;
+    float unused;
+    sr_vec3 d = sr_photometry_sample(&m->guide, u_direction, &unused), out = sr_normalize(sr_transform_vector(&m->common.light_to_world, d));
+    *ray = (struct sr_light_ray){.from = {.p = m->p}, .w = out, .L = sr_spd_along(&m->I, w) * intensity(m, out)};
+    emit_pdf(self, ray->from.n, out, &ray->pdf_area, &ray->pdf_direction);
+    return ray->pdf_direction > 0 && !sr_spectrum_is_black(ray->L);
+}
+
+static float emit_weight(const void *self)
+{
+    return ((const struct ies *)self)->flux;
+}
+
 static float power(const void *self)
 {
     return ((const struct ies *)self)->flux;
@@ -101,5 +136,6 @@ static bool bounds(const void *self, struct sr_light_bounds *b)
 
 const struct sr_light_model sr_light_ies = {
     .name = "ies", .params = params, .size = sizeof(struct ies), .is_delta = true, .reads_own_file = true, .prepare = prepare,
-    .sample = sample, .pdf = sr_light_delta_pdf, .Le = sr_light_delta_Le, .bounds = bounds, .power = power,
+    .sample = sample, .pdf = sr_light_delta_pdf, .Le = sr_light_delta_Le, .bounds = bounds, .emit = emit,
+    .emit_pdf = emit_pdf, .emit_weight = emit_weight, .power = power,
 };
