@@ -78,6 +78,7 @@ void sr_film_block_add(struct sr_film_block *b, const float rgb[3], bool is_fini
     }
     for (int c = 0; c < 3; ++c)
         b->rgb[c] += (double)rgb[c];
+    b->largest = sr_max(b->largest, rgb[0] + rgb[1] + rgb[2]);
 }
 
 void sr_film_block_add_first(struct sr_film_block *b, const struct sr_first_hit *h)
@@ -110,6 +111,7 @@ void sr_film_store(struct sr_film *film, uint32_t x, uint32_t y, const struct sr
     p->n += b->n;
     p->blocks += 1;
     p->dropped += b->dropped;
+    p->largest = sr_max(p->largest, b->largest);
     if (!film->has_aov)
         return;
     struct sr_film_aov *a = &film->aov[i];
@@ -152,6 +154,76 @@ static double pixel_variance(const struct sr_film *film, uint32_t x, uint32_t y,
     double w[3] = {0, 0, 0};
     w[c] = 1;
     return mean_variance(&film->pixels[(size_t)y * film->width + x], c) + sr_film_splat_variance(film, x, y, x + 1, y + 1, w);
+}
+
+static void join_pixel(struct sr_film_pixel *a, const struct sr_film_pixel *b)
+{
+    if (b->n == 0)
+        return;
+    if (a->n == 0) {
+        *a = *b;
+        return;
+    }
+    // the sums of a film whose plain mean and spread are those of the halves together
+    struct sr_film_pixel p = {.n = a->n + b->n, .blocks = a->blocks + b->blocks - 1, .dropped = a->dropped + b->dropped,
+                              .largest = sr_max(a->largest, b->largest)};
+    for (int c = 0; c < 3; ++c) {
+        double mean = (a->sum[c] / a->n + b->sum[c] / b->n) / 2, variance = (mean_variance(a, c) + mean_variance(b, c)) / 4;
+        p.sum[c] = mean * p.n;
+        p.square[c] = p.sum[c] * mean + (isfinite(variance) ? variance * ((double)(p.blocks - 1) * p.n) : 0);
+    }
+    *a = p;
+}
+
+void sr_film_join_halves(struct sr_film *a, const struct sr_film *b)
+{
+    size_t count = (size_t)a->width * a->height;
+    for (size_t i = 0; i < count; ++i)
+        join_pixel(&a->pixels[i], &b->pixels[i]);
+    for (size_t i = 0; a->has_aov && i < count; ++i) {
+        struct sr_film_aov *to = &a->aov[i];
+        const struct sr_film_aov *from = &b->aov[i];
+        if (to->hits == 0)
+            to->material = from->material, to->object = from->object;
+        for (int c = 0; c < 3; ++c) {
+            to->albedo[c] += from->albedo[c];
+            to->n[c] += from->n[c];
+            to->ns[c] += from->ns[c];
+            to->p[c] += from->p[c];
+        }
+        to->depth += from->depth;
+        to->uv[0] += from->uv[0];
+        to->uv[1] += from->uv[1];
+        to->hits += from->hits;
+        to->n_samples += from->n_samples;
+    }
+}
+
+double sr_film_relative_error(const struct sr_film *film, const double w[3])
+{
+    double mean = 0, variance = 0;
+    size_t count = (size_t)film->width * film->height;
+    for (size_t i = 0; i < count; ++i) {
+        const struct sr_film_pixel *p = &film->pixels[i];
+        double se = 0;
+        for (int c = 0; c < 3; ++c) {
+            mean += p->n ? w[c] * p->sum[c] / p->n : 0;
+            se += fabs(w[c]) * sqrt(mean_variance(p, c));
+        }
+        variance += se * se;
+    }
+    return sqrt(variance * (double)count) / mean;
+}
+
+uint64_t sr_film_doubtful_pixels(const struct sr_film *film)
+{
+    uint64_t count = 0;
+    for (size_t i = 0; i < (size_t)film->width * film->height; ++i) {
+        const struct sr_film_pixel *p = &film->pixels[i];
+        double sum = p->sum[0] + p->sum[1] + p->sum[2];
+        count += p->n >= 16 && (double)p->largest > fmax(0.05, 16.0 / p->n) * sum;
+    }
+    return count;
 }
 
 enum { POOL = 2 }; // pixels to each side: 5 x 5

@@ -73,6 +73,7 @@ struct sr_film_block {
     double rgb[3];
     uint32_t n;       // samples taken, dropped ones included
     uint32_t dropped; // samples that were not finite: counted as zero
+    float largest;    // R + G + B of the brightest sample
     struct sr_first_hit first_sum; // sums of the continuous members
     uint32_t hits, samples_seen;
 };
@@ -81,6 +82,7 @@ struct sr_film_pixel {
     double sum[3];    // of all samples
     double square[3]; // sum over blocks of (block sum)^2 / (samples of the block)
     uint32_t n, blocks, dropped;
+    float largest;    // R + G + B of the brightest sample
 };
 
 /* ---- splats: light that paths from the lights bring to any place of the picture ----
@@ -129,6 +131,16 @@ double sr_film_splat_variance(const struct sr_film *film, uint32_t x0, uint32_t 
  * conservative; measurements (replicates): of the pixel's own blocks, Student with blocks - 1 degrees. */
 void sr_film_pixel_mean(const struct sr_film *film, uint32_t x, uint32_t y, double mean[3]);
 void sr_film_pixel_error(const struct sr_film *film, uint32_t x, uint32_t y, bool pooled, double standard_error[3]);
+/* Makes a the picture of two halves of independent blocks, (mean a + mean b) / 2 for each pixel whatever their numbers of samples,
+ * with the error and the degrees of freedom of that mean. Where one of them has no samples the other one's mean stands. */
+void sr_film_join_halves(struct sr_film *a, const struct sr_film *b);
+/* Root mean square of the pixels' standard errors over the mean, of a linear form w . rgb [1]; blocks are replicates. */
+double sr_film_relative_error(const struct sr_film *film, const double w[3]);
+
+/* How many pixels' errors are not to be trusted, as one sample brings more than 5 % of the light, or 16 times its due where that is
+ * more: the next such sample may not have come. Pixels that have fewer than 16 samples are not judged. */
+uint64_t sr_film_doubtful_pixels(const struct sr_film *film);
+
 /* Mean over a rectangle of pixels of a linear form (w . rgb), with its standard error and degrees of freedom. Pixels are
  * independent, so their variances add. */
 struct sr_film_mean {

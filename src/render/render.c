@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Work units and workers: every tile gets its blocks of samples in order, and any thread may make any of them. */
 #define _POSIX_C_SOURCE 200809L
-#include "render/render.h"
+#include "render/private.h"
 
 #include <pthread.h>
 #include <sched.h>
@@ -17,6 +17,7 @@ struct response {
 
 struct run {
     const struct sr_render_job *job;
+    const struct sr_render_pass *pass;
     struct sr_film *film;
     struct response response;
     uint32_t tile, tiles_x, tiles_y, blocks;
@@ -27,7 +28,7 @@ struct run {
     atomic_bool cancelled;
     pthread_rwlock_t film_lock;    // stores share it, whoever looks at the whole film has it alone
     pthread_mutex_t progress_lock; // guards the members below
-    double start_s, last_progress_s;
+    double last_progress_s;
     uint32_t first_dropped[4];     // x, y, replicate, sample
     bool has_dropped;
     struct sr_film_block *scratch; // tile * tile for each thread
@@ -214,13 +215,17 @@ static bool is_cancelled(struct run *run)
 static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, struct sr_film_block *b, struct splatting *splatting, struct sr_worker *worker)
 {
     const struct sr_render_job *job = run->job;
+    const struct sr_render_pass *pass = run->pass;
     *b = (struct sr_film_block){0};
-    uint64_t per_replicate = job->replicates ? job->spp / job->replicates : 0;
-    uint32_t replicate = job->replicates ? block : 0;
-    uint32_t begin = job->replicates ? 0 : (uint32_t)((uint64_t)job->spp * block / run->blocks);
-    uint32_t end = job->replicates ? (uint32_t)per_replicate : (uint32_t)((uint64_t)job->spp * (block + 1) / run->blocks);
-    struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, x, y, replicate, begin);
     uint32_t pixel = (y - (uint32_t)job->film.y0) * run->film->width + x - (uint32_t)job->film.x0;
+    uint32_t replicate = 0, begin = 0, end = pass->counts ? pass->counts[pixel] : pass->per_replicate;
+    if (end > 0)
+        replicate = pass->first_replicate + block;
+    else {
+        begin = (uint32_t)((uint64_t)job->spp * block / run->blocks);
+        end = (uint32_t)((uint64_t)job->spp * (block + 1) / run->blocks);
+    }
+    struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, x, y, replicate, begin);
     if (splatting)
         splatting->group = block % run->film->splats->groups;
     for (uint32_t i = begin; i < end; ++i) {
@@ -254,7 +259,9 @@ static void tell_progress(struct run *run, double share)
     double now = sr_clock_s();
     if (now - run->last_progress_s >= job->progress_interval_s) {
         run->last_progress_s = now;
-        double elapsed = now - run->start_s;
+        const struct sr_render_pass *pass = run->pass;
+        double elapsed = now - pass->start_s;
+        share = pass->share_begin + share * (pass->share_end - pass->share_begin);
         pthread_rwlock_wrlock(&run->film_lock);
         struct sr_render_progress p = {
             .share = share, .elapsed_s = elapsed, .left_s = share > 0 ? elapsed * (1 - share) / share : NAN,
@@ -319,52 +326,73 @@ static void work(void *context, int thread)
     }
 }
 
-sr_status sr_render(const struct sr_render_job *job, struct sr_film **film, struct sr_render_report *report, struct sr_error *error)
+static void add_to_report(const struct run *run, struct sr_render_report *report)
 {
-    *film = NULL;
-    *report = (struct sr_render_report){0};
-    if (job->spp < 1)
-        return sr_fail(error, SR_ERROR_USAGE, "at least one sample per pixel is needed");
-    if (job->replicates == 1 || (job->replicates && job->spp % job->replicates != 0))
-        return sr_fail(error, SR_ERROR_USAGE, "%u samples per pixel cannot be split into %u replicates of equal size (2 or more)", job->spp, job->replicates);
-    if (sr_film_create(&job->film, job->with_aov, film, error) != SR_OK)
-        return error->status;
-
-    struct run run = {.job = job, .film = *film, .tile = job->tile > 0 ? (uint32_t)job->tile : DEFAULT_TILE};
-    run.response = response_of(job);
-    run.tiles_x = ((*film)->width + run.tile - 1) / run.tile;
-    run.tiles_y = ((*film)->height + run.tile - 1) / run.tile;
-    run.blocks = job->replicates ? job->replicates : job->spp < ORDINARY_BLOCKS ? job->spp : ORDINARY_BLOCKS;
-    if (job->integrator.model->splats && job->sensor.model->connect) {
-        if (sr_film_add_splats(*film, run.blocks, error) != SR_OK) {
-            sr_film_destroy(*film);
-            *film = NULL;
-            return error->status;
-        }
-        find_middle(&run);
+    if (report->dropped == 0 && run->dropped > 0) {
+        report->dropped_x = run->first_dropped[0], report->dropped_y = run->first_dropped[1];
+        report->dropped_replicate = run->first_dropped[2], report->dropped_sample = run->first_dropped[3];
     }
+    report->paths += run->paths;
+    report->rays += run->rays;
+    report->shadow_rays += run->shadow_rays;
+    report->vertices += run->vertices;
+    report->dropped += run->dropped + (run->film->splats ? run->film->splats->dropped : 0);
+    report->render_s = sr_clock_s() - run->pass->start_s;
+    report->is_complete = !run->cancelled;
+}
+
+sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render_pass *pass, struct sr_render_report *report, struct sr_error *error)
+{
+    struct run run = {.job = job, .pass = pass, .film = pass->film, .tile = job->tile > 0 ? (uint32_t)job->tile : DEFAULT_TILE, .blocks = pass->blocks};
+    run.response = response_of(job);
+    run.tiles_x = (pass->film->width + run.tile - 1) / run.tile;
+    run.tiles_y = (pass->film->height + run.tile - 1) / run.tile;
+    if (pass->film->splats)
+        find_middle(&run);
     int threads = job->threads > 0 ? job->threads : sr_thread_count();
     struct sr_arena arena = {0};
     run.tile_blocks = sr_arena_alloc(&arena, (size_t)run.tiles_x * run.tiles_y * sizeof *run.tile_blocks);
     run.scratch = sr_arena_alloc(&arena, (size_t)threads * run.tile * run.tile * sizeof *run.scratch);
     if (!run.tile_blocks || !run.scratch) {
         sr_arena_free(&arena);
-        sr_film_destroy(*film);
-        *film = NULL;
         return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for %d workers", threads);
     }
     pthread_rwlock_init(&run.film_lock, NULL);
     pthread_mutex_init(&run.progress_lock, NULL);
-    run.start_s = run.last_progress_s = sr_clock_s();
+    run.last_progress_s = sr_clock_s();
     sr_parallel(threads, work, &run);
     pthread_rwlock_destroy(&run.film_lock);
     pthread_mutex_destroy(&run.progress_lock);
-
-    *report = (struct sr_render_report){
-        .render_s = sr_clock_s() - run.start_s, .paths = run.paths, .rays = run.rays, .shadow_rays = run.shadow_rays, .vertices = run.vertices,
-        .dropped = run.dropped + ((*film)->splats ? (*film)->splats->dropped : 0), .dropped_x = run.first_dropped[0], .dropped_y = run.first_dropped[1],
-        .dropped_replicate = run.first_dropped[2], .dropped_sample = run.first_dropped[3], .is_complete = !run.cancelled,
-    };
+    add_to_report(&run, report);
     sr_arena_free(&arena);
     return run.cancelled ? SR_CANCELLED : SR_OK;
+}
+
+sr_status sr_render(const struct sr_render_job *job, struct sr_film **film, struct sr_render_report *report, struct sr_error *error)
+{
+    *film = NULL;
+    *report = (struct sr_render_report){0};
+    if (job->spp < 1)
+        return sr_fail(error, SR_ERROR_USAGE, "at least one sample per pixel is needed");
+    bool splats = job->integrator.model->splats && job->sensor.model->connect;
+    if (job->adaptive.is_on && splats)
+        return sr_fail(error, SR_ERROR_USAGE, "the estimator %s brings light to the whole picture at a time, and cannot spend samples on some pixels alone",
+                       job->integrator.model->name);
+    if (job->adaptive.is_on)
+        return sr_render_adaptive(job, film, report, error);
+    if (job->replicates == 1 || (job->replicates && job->spp % job->replicates != 0))
+        return sr_fail(error, SR_ERROR_USAGE, "%u samples per pixel cannot be split into %u replicates of equal size (2 or more)", job->spp, job->replicates);
+    if (sr_film_create(&job->film, job->with_aov, film, error) != SR_OK)
+        return error->status;
+    struct sr_render_pass pass = {.film = *film, .start_s = sr_clock_s(), .share_end = 1};
+    pass.blocks = job->replicates ? job->replicates : job->spp < ORDINARY_BLOCKS ? job->spp : ORDINARY_BLOCKS;
+    pass.per_replicate = job->replicates ? job->spp / job->replicates : 0;
+    sr_status status = splats ? sr_film_add_splats(*film, pass.blocks, error) : SR_OK;
+    if (status == SR_OK)
+        status = sr_render_pass(job, &pass, report, error);
+    if (status != SR_OK && status != SR_CANCELLED) {
+        sr_film_destroy(*film);
+        *film = NULL;
+    }
+    return status;
 }

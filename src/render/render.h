@@ -24,6 +24,16 @@ struct sr_render_progress {
     const struct sr_film *film; // as it is now; pixels of running units may be a block behind
 };
 
+/* Samples where the picture is noisy. Two halves of independent replicates: a pilot of each says where the other one's further
+ * samples go, so that no sample has a say in how much it counts, and every pixel's expectation is that of an even share
+ * (docs/decisions/0013-adaptive-sampling.md). */
+struct sr_render_adaptive {
+    bool is_on;
+    double error;  // [1] relative root mean square error of the picture to aim at; 0: none
+    double time_s; // [s] to aim at; 0: none. Bytes then depend on the machine's speed
+    // without either, spp samples per pixel are taken on average; with one, at most as many
+};
+
 struct sr_render_job {
     const struct sr_scene *scene;
     struct sr_sensor sensor;
@@ -34,6 +44,7 @@ struct sr_render_job {
     uint32_t seed;
     uint32_t spp;        // samples per pixel, in all
     uint32_t replicates; // 0: an ordinary image; R >= 2: R independently scrambled nets, for Student's intervals
+    struct sr_render_adaptive adaptive; // then replicates is not looked at
     struct sr_lambda_range lambda; // [nm]
     bool jitter_pixel, jitter_lambda; // false only to look into things
     bool with_aov;

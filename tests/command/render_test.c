@@ -87,6 +87,30 @@ TEST(render_json_has_units_and_uncertainty)
     json_decref(j);
 }
 
+TEST(render_aims_at_an_error_and_tells_when_it_missed)
+{
+    json_t *j = json_of(run_expecting(0, "render " CORNELL " --resolution 16,16 --error 10% -o c.exr -q --json"));
+    double reached = json_number_value(json_object_get(j, "relative_error"));
+    EXPECT(reached > 0.03 && reached <= 0.11);
+    EXPECT(json_is_true(json_object_get(json_object_get(j, "settings"), "adaptive")));
+    EXPECT(number_at(j, "settings", "spp") > 40);
+    json_decref(j);
+    EXPECT_SAYS(run_expecting(1, "render " CORNELL " --resolution 8,8 --error 0.1% --spp 16 -o c.exr")->err, "aimed at 0.1 %: missed");
+    EXPECT_SAYS(run_expecting(0, "render " CORNELL " --resolution 8,8 --adaptive --spp 16 -o c.exr")->err, "samples each on average");
+    EXPECT_SAYS(run_expecting(0, "render " CORNELL " --resolution 8,8 --time 0.2s -o c.exr")->err, "relative error of the picture");
+    EXPECT_SAYS(run_expecting(2, "render " CORNELL " --error 200% -o c.exr")->err, "a share such as 0.1% or 0.001 was expected");
+    run_expecting(2, "render " CORNELL " --time soon -o c.exr");
+    run_expecting(2, "render " CORNELL " --adaptive --replicates 4 --spp 8 -o c.exr");
+}
+
+TEST(render_tells_in_which_units)
+{
+    EXPECT_SAYS(run_expecting(0, "render " CORNELL " --resolution 8,8 --spp 1 -o c.exr")->err, "photometric units");
+    EXPECT_SAYS(run_expecting(0, "render " CORNELL " --resolution 8,8 --spp 1 -o c.exr --units si")->err, "SI units");
+    EXPECT_SAYS(run_expecting(0, "info c.exr")->out, "steradian.units                si");
+    run_expecting(2, "render " CORNELL " --units imperial -o c.exr");
+}
+
 TEST(render_one_sample_alone_and_again)
 {
     char first[MAX_SAID];

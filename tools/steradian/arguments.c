@@ -111,6 +111,34 @@ bool command_parse_uint(const struct command *command, const char *option, const
     return false;
 }
 
+/* A number and what may stand behind it, with its factor. */
+static bool parse_scaled(const struct command *command, const char *option, const char *text, const char *const *suffixes,
+                         const double *factors, double most, const char *expected, double *value)
+{
+    char *end;
+    double number = strtod(text, &end);
+    for (int i = 0; suffixes[i]; ++i)
+        if (end != text && strcmp(end, suffixes[i]) == 0) {
+            *value = number * factors[i];
+            if (*value > 0 && *value < most)
+                return true;
+        }
+    command_usage(command, "--%s %s: %s was expected", option, text, expected);
+    return false;
+}
+
+bool command_parse_share(const struct command *command, const char *option, const char *text, double *value)
+{
+    return parse_scaled(command, option, text, (const char *const[]){"", "%", NULL}, (const double[]){1, 0.01}, 1,
+                        "a share such as 0.1% or 0.001", value);
+}
+
+bool command_parse_time(const struct command *command, const char *option, const char *text, double *value_s)
+{
+    return parse_scaled(command, option, text, (const char *const[]){"", "s", "min", "h", NULL},
+                        (const double[]){1, 1, 60, 3600}, 1e9, "a time such as 60s or 5min", value_s);
+}
+
 bool command_parse_units(const struct command *command, const char *text, enum sr_units *units)
 {
     *units = strcmp(text, "si") == 0 ? SR_UNITS_SI : SR_UNITS_PHOTOMETRIC;

@@ -44,6 +44,10 @@ bool command_parse_uint(const struct command *command, const char *option, const
                         uint64_t *value);
 bool command_parse_float(const struct command *command, const char *option, const char *text, double lo, double hi,
                          double *value);
+/* "0.1%" or "0.001", between 0 and 1 */
+bool command_parse_share(const struct command *command, const char *option, const char *text, double *value);
+/* "60", "60s", "5min", "1h" [s] */
+bool command_parse_time(const struct command *command, const char *option, const char *text, double *value_s);
 /* "photometric" or "si" */
 bool command_parse_units(const struct command *command, const char *text, enum sr_units *units);
 /* "a,b,c,d" or "a b c d": finite numbers */

@@ -113,33 +113,6 @@ static bool take_systems(struct measure_arguments *a, const char *text)
     }
 }
 
-/* A number and what may stand behind it, with its factor. */
-static bool take_scaled(const char *option, const char *text, const char *const *suffixes, const double *factors, double lo, double hi, const char *expected,
-                        double *value)
-{
-    char *end;
-    *value = strtod(text, &end);
-    for (int i = 0; suffixes[i]; ++i)
-        if (end != text && strcmp(end, suffixes[i]) == 0) {
-            *value *= factors[i];
-            if (*value > lo && *value < hi)
-                return true;
-        }
-    command_usage(&command_measure, "--%s %s: %s was expected", option, text, expected);
-    return false;
-}
-
-static bool take_error(struct measure_arguments *a, const char *text)
-{
-    return take_scaled("error", text, (const char *const[]){"", "%", NULL}, (const double[]){1, 0.01}, 0, 1, "a share such as 0.1% or 0.001", &a->settings.error);
-}
-
-static bool take_time(struct measure_arguments *a, const char *text)
-{
-    return take_scaled("time", text, (const char *const[]){"", "s", "min", "h", NULL}, (const double[]){1, 1, 60, 3600}, 0, 1e9, "a time such as 60s or 5min",
-                       &a->settings.time_s);
-}
-
 static bool take_spectrum(struct measure_arguments *a, const char *text)
 {
     char rest;
@@ -175,9 +148,9 @@ static bool take_value(struct measure_arguments *a, int option, const char *name
         command_usage(c, "--bandpass %s: triangular or rectangular was expected", text);
         return false;
     case OPT_ERROR:
-        return take_error(a, text);
+        return command_parse_share(c, name, text, &a->settings.error);
     case OPT_TIME:
-        return take_time(a, text);
+        return command_parse_time(c, name, text, &a->settings.time_s);
     case OPT_SAMPLES:
         return command_parse_uint(c, name, text, 2, (uint64_t)1 << 40, &a->settings.samples);
     case OPT_REPLICATES:

@@ -14,6 +14,10 @@ static const char help[] =
     "\n"
     "  -o, --outfile FILE     .exr, .png, .pfm or .hdr; may be given several times\n"
     "      --spp N            samples per pixel (default: the scene's)\n"
+    "      --adaptive         more samples where the picture is noisy, spp on average, without bias\n"
+    "      --error E          (adaptive) as many as a relative root mean square error of E takes: 1% or 0.01\n"
+    "      --time T           (adaptive) as many as fit into this time: 60s, 5min, 1h; with both: whichever is less;\n"
+    "                         --spp is then the most (default: 65536)\n"
     "      --replicates R     R >= 2 independently scrambled nets: Student intervals, for measurements\n"
     "      --seed S           another seed, another independent picture (default: the scene's)\n"
     "      --threads N        (also --nthreads) default: all processors\n"
@@ -41,7 +45,7 @@ static const char help[] =
     "\n"
     "While it renders: Ctrl-C (SIGINT) and SIGTERM write what there is and end with 130 or 143, a second one ends at\n"
     "once; SIGUSR1 writes what there is and goes on (kill -USR1 PID).\n"
-    "Exit codes: 0 done, 2 usage, 3 a bad scene, 4 the output cannot be written or memory is short, 130/143 "
+    "Exit codes: 0 done, 1 the error of --error was missed, 2 usage, 3 a bad scene, 4 the output cannot be written or memory is short, 130/143 "
     "interrupted.\n"
     "\n"
     "Examples:\n"
@@ -74,6 +78,8 @@ static int print_sample(const struct render_arguments *a, const struct sr_render
 
 /* ---- all together ---- */
 
+enum { MOST_SPP = 1 << 16 }; // where --error or --time says how many are needed
+
 /* The side of a work tile [pixel]: small where a pixel takes many samples, so that a unit of work ends within seconds and
  * progress, partial pictures and Ctrl-C need not wait. The bytes of the picture do not depend on it. */
 static int choose_tile(const struct render_arguments *a, const struct sr_import_result *scene)
@@ -86,6 +92,7 @@ static int choose_tile(const struct render_arguments *a, const struct sr_import_
 static struct sr_render_job make_job(const struct render_arguments *a, const struct sr_import_result *scene,
                                      bool with_aov, struct rendering *r)
 {
+    bool has_target = a->adaptive.error > 0 || a->adaptive.time_s > 0;
     return (struct sr_render_job){
         .scene = scene->scene,
         .sensor = scene->sensor,
@@ -96,7 +103,8 @@ static struct sr_render_job make_job(const struct render_arguments *a, const str
                    : strcmp(a->sampler, "sobol") == 0 ? SR_SAMPLER_SOBOL
                                                       : SR_SAMPLER_INDEPENDENT,
         .seed = a->has_seed ? (uint32_t)a->seed : scene->seed,
-        .spp = scene->spp,
+        .spp = has_target && !a->import.spp ? MOST_SPP : scene->spp,
+        .adaptive = a->adaptive,
         .replicates = (uint32_t)a->replicates,
         .lambda = {(float)a->lambda[0], (float)a->lambda[1]},
         .jitter_pixel = scene->jitter_pixel && !a->no_pixel_jitter,
@@ -120,7 +128,7 @@ static void print_replay(const struct render_arguments *a, const struct sr_rende
             "command: --pixel %u,%u --sample %u",
             a->scene, (unsigned long long)report->dropped, report->dropped_x, report->dropped_y,
             report->dropped_sample);
-    if (job->replicates)
+    if (job->replicates || job->adaptive.is_on)
         fprintf(stderr, " --replicate %u", report->dropped_replicate);
     fputc('\n', stderr);
 }
@@ -142,7 +150,7 @@ static int finish(struct rendering *r, const struct sr_film *film, const struct 
     else
         json_decref(meters);
     if (report->is_complete)
-        return code;
+        return code ? code : render_missed_target(r, film) ? SR_ERROR_CHECK : 0;
     fprintf(stderr, "steradian render: interrupted; what there was has been written\n");
     return render_interrupt_exit();
 }

@@ -31,6 +31,9 @@ enum {
     OPT_STAMP,
     OPT_IRRADIANCE,
     OPT_UNITS,
+    OPT_ADAPTIVE,
+    OPT_ERROR,
+    OPT_TIME,
 };
 
 static const struct option long_options[] = {
@@ -59,6 +62,9 @@ static const struct option long_options[] = {
     {"replicate", required_argument, NULL, OPT_REPLICATE},
     {"stats", no_argument, NULL, OPT_STATS},
     {"units", required_argument, NULL, OPT_UNITS},
+    {"adaptive", no_argument, NULL, OPT_ADAPTIVE},
+    {"error", required_argument, NULL, OPT_ERROR},
+    {"time", required_argument, NULL, OPT_TIME},
     {"json", no_argument, NULL, OPT_JSON},
     {"irradiance", required_argument, NULL, OPT_IRRADIANCE},
     {"stamp", no_argument, NULL, OPT_STAMP},
@@ -137,6 +143,12 @@ static bool take_numbers(struct render_arguments *a, int option, const char *nam
         for (int i = 0; i < 4; ++i)
             a->import.pixel_bounds[i] = (int32_t)sr_clamp((float)v[i], -2e9f, 2e9f);
         return true;
+    case OPT_ERROR:
+        a->adaptive.is_on = true;
+        return command_parse_share(c, name, text, &a->adaptive.error);
+    case OPT_TIME:
+        a->adaptive.is_on = true;
+        return command_parse_time(c, name, text, &a->adaptive.time_s);
     case OPT_UNITS:
         return command_parse_units(c, text, &a->import.units);
     case OPT_EXPOSURE:
@@ -179,6 +191,9 @@ int render_parse(int argc, char **argv, struct render_arguments *a)
         case OPT_NO_LAMBDA_JITTER:
             a->no_lambda_jitter = true;
             break;
+        case OPT_ADAPTIVE:
+            a->adaptive.is_on = true;
+            break;
         case OPT_QUICK:
             a->import.quick = true;
             break;
@@ -205,6 +220,8 @@ int render_parse(int argc, char **argv, struct render_arguments *a)
         return command_usage(&command_render,
                              optind == argc ? "a scene file was expected" : "one scene file was expected, there are %d",
                              argc - optind);
+    if (a->adaptive.is_on && a->replicates)
+        return command_usage(&command_render, "--replicates does not go with --adaptive, --error or --time: they have 16 of their own");
     if (a->has_sample && !a->has_pixel)
         return command_usage(&command_render, "--sample needs --pixel: which pixel's sample?");
     a->scene = argv[optind];

@@ -14,6 +14,7 @@ struct render_arguments {
     const char *scene, *outputs[RENDER_MAX_OUTPUTS];
     int output_count;
     struct sr_import_options import;
+    struct sr_render_adaptive adaptive;
     uint64_t seed, replicates, threads, tile, sample, replicate;
     bool has_seed, has_pixel, has_sample, aov, quiet, json, stats, no_pixel_jitter, no_lambda_jitter, has_exposure,
         stamp;
@@ -63,6 +64,10 @@ void render_on_progress(void *user, const struct sr_render_progress *p);
 
 /* Measures and, unless quiet, prints; returns the list for the JSON. */
 json_t *render_measure(const struct render_arguments *a, const struct sr_render_job *job);
+/* Whether --error asked for less noise than the picture has. */
+bool render_missed_target(const struct rendering *r, const struct sr_film *film);
+/* Mean samples per pixel. */
+double render_mean_spp(const struct sr_film *film);
 void render_print_summary(const struct rendering *r, const struct sr_film *film, const struct sr_render_report *report);
 /* Takes meters over; the exit code. */
 int render_print_json(const struct rendering *r, const struct sr_film *film, const struct sr_render_report *report,

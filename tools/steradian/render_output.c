@@ -45,7 +45,8 @@ static double pixel_B(const struct sr_render_job *job)
     double channels = job->with_aov ? 25 : 7;
     uint32_t groups = job->replicates ? job->replicates : 4; // of splats
     double splats_B = job->integrator.model->splats ? (double)sr_film_splats_B(groups < SR_SPLAT_GROUPS ? groups : SR_SPLAT_GROUPS) : 0;
-    return splats_B + (double)sizeof(struct sr_film_pixel) + (job->with_aov ? (double)sizeof(struct sr_film_aov) : 0) +
+    double adaptive_B = job->adaptive.is_on ? sizeof(struct sr_film_pixel) + (job->with_aov ? sizeof(struct sr_film_aov) : 0) + 32 : 0;
+    return splats_B + adaptive_B + (double)sizeof(struct sr_film_pixel) + (job->with_aov ? (double)sizeof(struct sr_film_aov) : 0) +
            2 * channels * sizeof(float);
 }
 
@@ -63,7 +64,7 @@ sr_status render_check_memory(const struct sr_render_job *job, struct sr_error *
 
 /* ---- writing ---- */
 
-static void describe(struct sr_image *image, const struct rendering *r, double elapsed_s, bool is_complete,
+static void describe(struct sr_image *image, const struct rendering *r, const struct sr_film *film, double elapsed_s, bool is_complete,
                      struct sr_error *error)
 {
     char text[64];
@@ -75,7 +76,7 @@ static void describe(struct sr_image *image, const struct rendering *r, double e
     ATTRIBUTE("steradian.version", "%s", SR_VERSION);
     ATTRIBUTE("steradian.sceneHash", "%016llx", (unsigned long long)r->scene->hash);
     ATTRIBUTE("steradian.seed", "%u", r->job->seed);
-    ATTRIBUTE("steradian.samplesPerPixel", "%u", r->job->spp);
+    ATTRIBUTE("steradian.samplesPerPixel", "%.9g", render_mean_spp(film));
     ATTRIBUTE("steradian.replicates", "%u", r->job->replicates);
     ATTRIBUTE("steradian.integrator", "%s", r->job->integrator.model->name);
     ATTRIBUTE("steradian.lambda", "%g..%g nm", (double)r->job->lambda.lo, (double)r->job->lambda.hi);
@@ -97,9 +98,9 @@ sr_status render_write_outputs(const struct rendering *r, const struct sr_film *
                                bool is_complete, struct sr_error *error)
 {
     struct sr_image *image;
-    if (sr_render_image(film, true, r->job->replicates > 0, &image, error) != SR_OK)
+    if (sr_render_image(film, true, r->job->replicates > 0 || r->job->adaptive.is_on, &image, error) != SR_OK)
         return error->status;
-    describe(image, r, elapsed_s, is_complete, error);
+    describe(image, r, film, elapsed_s, is_complete, error);
     const struct render_arguments *a = r->arguments;
     struct sr_image_write_options options = {
         .tone = {.op = SR_TONE_LINEAR, .is_auto = !a->has_exposure, .exposure_EV = (float)a->exposure_EV}};

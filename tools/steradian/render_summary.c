@@ -15,6 +15,34 @@ static struct sr_quantity mean_luminance(const struct sr_film *film)
     return (struct sr_quantity){.value = L.mean, .u = L.standard_error, .degrees = L.degrees, .unit = unit};
 }
 
+/* The noise of the picture, of what --error speaks [1]; NaN where it is not known. */
+static double relative_error(const struct rendering *r, const struct sr_film *film)
+{
+    return r->job->adaptive.is_on ? sr_film_relative_error(film, sr_colour_space(film->settings.space)->xyz_from_rgb[1]) : NAN;
+}
+
+bool render_missed_target(const struct rendering *r, const struct sr_film *film)
+{
+    double goal = r->job->adaptive.error;
+    return goal > 0 && !(relative_error(r, film) <= 1.1 * goal); // the error itself is known to some percent
+}
+
+double render_mean_spp(const struct sr_film *film)
+{
+    double sum = 0, count = (double)film->width * film->height;
+    for (size_t i = 0; i < (size_t)film->width * film->height; ++i)
+        sum += film->pixels[i].n;
+    return sum / count;
+}
+
+/* Of how many pixels the error bars are told to be doubtful: of more than one in twenty, or it is not told. */
+static uint64_t doubtful(const struct rendering *r, const struct sr_film *film)
+{
+    uint64_t count = sr_film_doubtful_pixels(film);
+    bool tells_errors = r->job->replicates || r->job->adaptive.is_on;
+    return tells_errors && count > (uint64_t)film->width * film->height / 20 ? count : 0;
+}
+
 static double rate(double count, double time_s)
 {
     return time_s > 0 ? count / time_s : 0;
@@ -50,11 +78,20 @@ void render_print_summary(const struct rendering *r, const struct sr_film *film,
     struct sr_quantity L = mean_luminance(film);
     char text[128];
     fprintf(stderr, "mean luminance %s%s\n", sr_quantity_text("L_v", &L, text, sizeof text),
-            r->job->replicates || !isfinite(L.u) ? "" : ", conservative");
-    fprintf(stderr, "%u x %u pixels, %u samples each, %s units; %.2f s, %.2f M paths/s, %.2f M rays/s\n", film->width,
-            film->height, r->job->spp, r->scene->units == SR_UNITS_SI ? "SI" : "photometric",
+            r->job->replicates || r->job->adaptive.is_on || !isfinite(L.u) ? "" : ", conservative");
+    fprintf(stderr, "%u x %u pixels, %.6g samples each%s, %s units; %.2f s, %.2f M paths/s, %.2f M rays/s\n", film->width,
+            film->height, render_mean_spp(film), r->job->adaptive.is_on ? " on average" : "", r->scene->units == SR_UNITS_SI ? "SI" : "photometric",
             report->render_s, 1e-6 * rate((double)report->paths, report->render_s),
             1e-6 * rate((double)(report->rays + report->shadow_rays), report->render_s));
+    if (r->job->adaptive.is_on)
+        fprintf(stderr, "relative error of the picture %.3g %%", 100 * relative_error(r, film));
+    if (r->job->adaptive.is_on && r->job->adaptive.error > 0)
+        fprintf(stderr, ", aimed at %.3g %%%s", 100 * r->job->adaptive.error, render_missed_target(r, film) ? ": missed" : "");
+    if (r->job->adaptive.is_on)
+        fputc('\n', stderr);
+    if (doubtful(r, film))
+        fprintf(stderr, "warning: in %llu of %llu pixels one sample brings much of the light: their error bars may be too short\n",
+                (unsigned long long)doubtful(r, film), (unsigned long long)film->width * film->height);
     if (r->arguments->stats)
         fprintf(stderr,
                 "scene: %llu triangles, %llu patches, %llu quadrics, %llu instances, %llu lights, %llu materials; read "
@@ -74,11 +111,11 @@ void render_print_summary(const struct rendering *r, const struct sr_film *film,
 static json_t *settings_json(const struct rendering *r, const struct sr_film *film)
 {
     const struct sr_render_job *job = r->job;
-    return json_pack("{s:o, s:s, s:i, s:i, s:s, s:I, s:I, s:I, s:s, s:s, s:{s:o, s:o, s:s}}", "scene",
+    return json_pack("{s:o, s:s, s:i, s:i, s:s, s:f, s:I, s:I, s:b, s:s, s:s, s:{s:o, s:o, s:s}}", "scene",
                      command_json_text(r->arguments->scene), "units",
                      r->scene->units == SR_UNITS_SI ? "si" : "photometric", "width", (int)film->width, "height", (int)film->height,
-                     "size_unit", "pixel", "spp", (json_int_t)job->spp, "seed", (json_int_t)job->seed, "replicates",
-                     (json_int_t)job->replicates, "integrator", job->integrator.model->name, "sampler",
+                     "size_unit", "pixel", "spp", render_mean_spp(film), "seed", (json_int_t)job->seed, "replicates",
+                     (json_int_t)job->replicates, "adaptive", job->adaptive.is_on, "integrator", job->integrator.model->name, "sampler",
                      job->sampler == SR_SAMPLER_SOBOL ? "sobol" : "independent", "wavelengths", "min",
                      command_json_number((double)job->lambda.lo), "max", command_json_number((double)job->lambda.hi),
                      "unit", "nm");
@@ -96,7 +133,7 @@ int render_print_json(const struct rendering *r, const struct sr_film *film, con
         json_array_append_new(outputs, command_json_text(render_output_name(r->arguments, r->scene, i)));
     json_t *j = json_pack(
         "{s:s, s:s, s:o, s:b, s:o, s:o, s:{s:f, s:f, s:f, s:f, s:f, s:I}, s:{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, "
-        "s:I, s:I}, s:o}",
+        "s:I, s:I, s:I}, s:o, s:o}",
         "version", SR_VERSION, "scene_hash", hash, "outputs", outputs, "complete", report->is_complete, "settings",
         settings_json(r, film), "mean_luminance", command_json_measured(&L), "time", "read_s", r->scene->read_s, "build_s",
         counts.build_s, "render_s", report->render_s, "paths_per_s", rate((double)report->paths, report->render_s),
@@ -105,6 +142,7 @@ int render_print_json(const struct rendering *r, const struct sr_film *film, con
         (json_int_t)counts.patches, "quadrics", (json_int_t)counts.quadrics, "lights", (json_int_t)counts.lights,
         "paths", (json_int_t)report->paths, "rays", (json_int_t)report->rays, "shadow_rays",
         (json_int_t)report->shadow_rays, "vertices", (json_int_t)report->vertices, "dropped_samples",
-        (json_int_t)report->dropped, "primitives_without_area", (json_int_t)counts.degenerate, "irradiance", meters);
+        (json_int_t)report->dropped, "primitives_without_area", (json_int_t)counts.degenerate, "doubtful_pixels",
+        (json_int_t)sr_film_doubtful_pixels(film), "irradiance", meters, "relative_error", command_json_number(relative_error(r, film)));
     return command_print_json("render", j);
 }
