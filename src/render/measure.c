@@ -124,7 +124,8 @@ static void read_all(const struct measuring *m, const struct measure_sums *total
     enum sr_kind kind = m->meter->model->kind;
     for (int i = 0; i < SR_SYSTEM_COUNT; ++i)
         out->value[i] = reading_of(m, total, (uint32_t)i, sr_unit_of(kind, (enum sr_system)i, false));
-    read_colour(m, total, out);
+    if (m->settings->with_colour)
+        read_colour(m, total, out);
     for (uint32_t k = 0; k < m->settings->spectrometer.count; ++k)
         out->spectrum[k] = reading_of(m, total, MEASURE_BINS + k, sr_unit_of(kind, SR_RADIOMETRIC, true));
     out->samples = total->samples;

@@ -83,6 +83,7 @@ struct sr_measure_settings {
     enum sr_system system; // whose uncertainty is looked at
     uint32_t stream;     // which random numbers: another for each meter that is to be independent
     struct sr_spectrometer spectrometer; // count 0: none
+    bool with_colour;
 };
 
 enum { SR_MEASURE_REMARKS = 6 };
@@ -91,7 +92,7 @@ enum { SR_MEASURE_REMARKS = 6 };
  * a target nor a limit of time biases it. */
 struct sr_measurement {
     struct sr_quantity value[SR_SYSTEM_COUNT]; // over the job's wavelengths
-    struct sr_quantity colour[SR_COLOUR_COUNT]; // u by the jackknife; X Y Z as the photopic value, CCT in K
+    struct sr_quantity colour[SR_COLOUR_COUNT]; // if asked for: u by the jackknife; X Y Z as the photopic value, CCT in K
     struct sr_quantity *spectrum; // of bins; NULL: none
     uint64_t samples, hits, dropped; // of the last round; hits: found light; dropped: not finite, count as nothing
     uint64_t pilot_samples;          // of the rounds before it

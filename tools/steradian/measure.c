@@ -361,6 +361,7 @@ static int measure_scene(const struct measure_arguments *a, const struct sr_impo
         struct sr_measure_settings s = a->settings;
         struct sr_measurement m;
         s.stream = i;
+        s.with_colour = measure_wants_colour(a, meter);
         if (measure_spectrometer(a, meter, &s.spectrometer, &error) != SR_OK)
             break;
         struct sr_render_job its = job;
