@@ -55,5 +55,5 @@ static sr_spectrum ambient_occlusion_L(const void *self, const struct sr_scene *
 }
 
 const struct sr_integrator_model sr_integrator_ambient_occlusion = {
-    .name = "ambientocclusion", .params = params, .size = sizeof(struct ambient_occlusion), .L = ambient_occlusion_L,
+    .name = "ambientocclusion", .text = "how much of the hemisphere is free, cosine-weighted", .params = params, .size = sizeof(struct ambient_occlusion), .L = ambient_occlusion_L,
 };

@@ -303,5 +303,5 @@ static sr_spectrum bdpt_L(const void *self, const struct sr_scene *scene, const 
 }
 
 const struct sr_integrator_model sr_integrator_bdpt = {
-    .name = "bdpt", .params = params, .size = sizeof(struct bdpt), .L = bdpt_L, .knows_receivers = true, .splats = true,
+    .name = "bdpt", .text = "paths from the sensor and from the lights, joined in all ways, weighed by their densities", .params = params, .size = sizeof(struct bdpt), .L = bdpt_L, .knows_receivers = true, .splats = true,
 };

@@ -71,6 +71,15 @@ void sr_seen_footprint(const struct sr_path_start *start, struct sr_point *x)
     sr_first_footprint(&seen, x);
 }
 
+bool sr_has_delta_lights(const struct sr_scene *scene)
+{
+    const struct sr_lights *lights = sr_scene_lights(scene);
+    for (uint32_t i = 0; i < lights->count; ++i)
+        if (lights->lights[i].model->is_delta)
+            return true;
+    return false;
+}
+
 sr_spectrum sr_escape_Le(const struct sr_scene *scene, sr_vec3 w, const struct sr_wavelengths *wavelengths)
 {
     const struct sr_lights *lights = sr_scene_lights(scene);

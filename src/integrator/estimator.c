@@ -23,6 +23,7 @@ struct estimator {
     bool has[SR_STRATEGY_COUNT];
     int going_on;    // the strategy whose direction the path takes
     bool finds_rays; // the set has directions
+    const char *label;
 };
 
 static const struct sr_param params[] = {
@@ -34,7 +35,6 @@ static const struct sr_param params[] = {
 
 static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *error)
 {
-    (void)arena;
     struct estimator *e = self;
     memset(e->has, 0, sizeof e->has);
     for (const char *p = e->strategies;;) {
@@ -55,29 +55,35 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     }
     e->finds_rays = e->has[SR_BY_BSDF] || e->has[SR_BY_COSINE] || e->has[SR_BY_UNIFORM];
     e->going_on = e->has[SR_BY_BSDF] || !e->finds_rays ? SR_BY_BSDF : e->has[SR_BY_COSINE] ? SR_BY_COSINE : SR_BY_UNIFORM;
-    return SR_OK;
+    static const char *const names[] = {"balance", "power", "mean"};
+    e->label = strchr(e->strategies, '+') ? sr_arena_printf(arena, "%s:%s", e->strategies, names[e->heuristic]) : e->strategies;
+    return e->label ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "not enough memory");
 }
 
 static const char *blind(const void *self, const struct sr_scene *scene)
 {
     const struct estimator *e = self;
     const struct sr_lights *lights = sr_scene_lights(scene);
-    bool finds_points = false, finds_unmet = false, has_points = false, has_unmet = false;
+    bool finds_points = false, finds_unmet = false, has_unmet = false;
     for (int i = 0; i < SR_STRATEGY_COUNT; ++i) {
         finds_points |= e->has[i] && sr_strategies[i].finds_points;
         finds_unmet |= e->has[i] && sr_strategies[i].finds_unmet;
     }
     for (uint32_t i = 0; i < lights->count; ++i) {
         struct sr_light light = lights->lights[i];
-        has_points |= light.model->is_delta;
         has_unmet |= light.model == &sr_light_area && ((const struct sr_light_area *)light.self)->is_ghost;
     }
-    if (has_points && !finds_points)
+    if (!finds_points && sr_has_delta_lights(scene))
         return "point, spot and distant lights are missing: no direction and no point of a surface that these strategies draw leads to "
                "them; add light-area or light-solid-angle";
     if (has_unmet && !finds_unmet)
         return "lights whose surface is invisible (alpha 0) are missing: no ray meets them; add an area strategy";
     return NULL;
+}
+
+static const char *label(const void *self)
+{
+    return ((const struct estimator *)self)->label;
 }
 
 /* What a path carries along. */
@@ -366,5 +372,5 @@ static sr_spectrum gather(const void *self, const struct sr_scene *scene, const 
 }
 
 const struct sr_integrator_model sr_integrator_estimator = {
-    .name = "estimator", .params = params, .size = sizeof(struct estimator), .L = L, .gather = gather, .prepare = prepare, .blind = blind,
+    .name = "estimator", .text = "paths from the sensor by any set of strategies", .params = params, .size = sizeof(struct estimator), .L = L, .gather = gather, .prepare = prepare, .blind = blind, .label = label,
 };

@@ -58,6 +58,7 @@ struct sr_receiver {
 
 struct sr_integrator_model {
     const char *name;
+    const char *text; // what it does, in one line
     const struct sr_param *params;
     size_t size;
     /* Radiance arriving along the ray, per wavelength. first: NULL, or the first surface; its material is NULL if there
@@ -77,6 +78,7 @@ struct sr_integrator_model {
     /* One sentence: which light of this scene the estimator cannot find, so that it is missing from the result. NULL, or
      * returns NULL: none. */
     const char *(*blind)(const void *self, const struct sr_scene *scene);
+    const char *(*label)(const void *self); // what tells it from others of its kind; NULL: its name
 };
 extern const struct sr_integrator_model *const sr_integrator_models[]; // ends with NULL
 const struct sr_integrator_model *sr_integrator_model_find(const char *name);
@@ -85,6 +87,21 @@ struct sr_integrator {
     const struct sr_integrator_model *model;
     const void *self;
 };
+
+/* "NAME[,key=value…]", or the estimator of a set of strategies: "bsdf+light-area[:power][,key=value…]". Whole numbers that
+ * both have (maxdepth) are base's, and all the rest if it is of the same kind; base NULL: as the tables say. */
+sr_status sr_integrator_parse(const char *text, const struct sr_integrator *base, struct sr_arena *arena, struct sr_integrator *out, struct sr_error *error);
+static inline const char *sr_integrator_label(const struct sr_integrator *i)
+{
+    return i->model->label ? i->model->label(i->self) : i->model->name;
+}
+static inline const char *sr_integrator_blind(const struct sr_integrator *i, const struct sr_scene *scene)
+{
+    return i->model->blind ? i->model->blind(i->self, scene) : NULL;
+}
+/* The strategies by number, NULL where they end. */
+const char *sr_strategy_name(int i);
+const char *sr_strategy_text(int i);
 
 /* ---- what the estimators share ---- */
 
@@ -99,6 +116,9 @@ void sr_first_footprint(const struct sr_path_start *start, struct sr_point *x);
  * path has been scattered, which looks at x from all sides. Bump maps tilt by it, so it decides what they look like; it
  * is what pbrt takes (Pharr, Jakob & Humphreys 2023, 10.1.2). */
 void sr_seen_footprint(const struct sr_path_start *start, struct sr_point *x);
+
+/* Lights that are delta functions: no ray meets them. */
+bool sr_has_delta_lights(const struct sr_scene *scene);
 
 /* Radiance of all infinite lights along an escaping ray. */
 sr_spectrum sr_escape_Le(const struct sr_scene *scene, sr_vec3 w, const struct sr_wavelengths *wavelengths);

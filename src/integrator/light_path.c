@@ -64,6 +64,6 @@ static void light_path_splat(const void *self, const struct sr_scene *scene, str
 }
 
 const struct sr_integrator_model sr_integrator_light_path = {
-    .name = "lightpath", .params = params, .size = sizeof(struct light_path), .L = light_path_L, .knows_receivers = true, .splats = true,
+    .name = "lightpath", .text = "paths from the lights alone: the adjoint equation", .params = params, .size = sizeof(struct light_path), .L = light_path_L, .knows_receivers = true, .splats = true,
     .splat = light_path_splat,
 };

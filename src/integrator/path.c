@@ -180,4 +180,4 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
     }
 }
 
-const struct sr_integrator_model sr_integrator_path = {.name = "path", .params = params, .size = sizeof(struct path), .L = path_L, .knows_receivers = true};
+const struct sr_integrator_model sr_integrator_path = {.name = "path", .text = "paths from the sensor; lights and BSDFs sampled and weighed by the power heuristic", .params = params, .size = sizeof(struct path), .L = path_L, .knows_receivers = true};

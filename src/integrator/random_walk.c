@@ -59,4 +59,10 @@ static sr_spectrum random_walk_L(const void *self, const struct sr_scene *scene,
     }
 }
 
-const struct sr_integrator_model sr_integrator_random_walk = {.name = "randomwalk", .params = params, .size = sizeof(struct random_walk), .L = random_walk_L};
+static const char *blind(const void *self, const struct sr_scene *scene)
+{
+    (void)self;
+    return sr_has_delta_lights(scene) ? "point, spot and distant lights are missing: no direction that is drawn leads to them" : NULL;
+}
+
+const struct sr_integrator_model sr_integrator_random_walk = {.name = "randomwalk", .text = "directions even over the sphere; light where a ray happens to meet it", .params = params, .size = sizeof(struct random_walk), .L = random_walk_L, .blind = blind};

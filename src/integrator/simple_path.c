@@ -105,4 +105,11 @@ static sr_spectrum simple_path_L(const void *self, const struct sr_scene *scene,
     }
 }
 
-const struct sr_integrator_model sr_integrator_simple_path = {.name = "simplepath", .params = params, .size = sizeof(struct simple_path), .L = simple_path_L};
+static const char *blind(const void *self, const struct sr_scene *scene)
+{
+    return !((const struct simple_path *)self)->sample_lights && sr_has_delta_lights(scene)
+               ? "point, spot and distant lights are missing: no direction that is drawn leads to them"
+               : NULL;
+}
+
+const struct sr_integrator_model sr_integrator_simple_path = {.name = "simplepath", .text = "paths from the sensor; lights sampled, or BSDFs, nothing weighed", .params = params, .size = sizeof(struct simple_path), .L = simple_path_L, .blind = blind};

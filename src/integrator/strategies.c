@@ -145,3 +145,13 @@ const struct sr_strategy sr_strategies[SR_STRATEGY_COUNT] = {
     {"light-solid-angle", "one light by its share, directions even over its solid angle", .light = light_solid_angle_light,
      .density = light_solid_angle_density, .finds_points = true, .finds_unmet = true},
 };
+
+const char *sr_strategy_name(int i)
+{
+    return i < SR_STRATEGY_COUNT ? sr_strategies[i].name : NULL;
+}
+
+const char *sr_strategy_text(int i)
+{
+    return i < SR_STRATEGY_COUNT ? sr_strategies[i].text : NULL;
+}

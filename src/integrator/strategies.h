@@ -42,6 +42,7 @@ struct sr_strategy {
     bool finds_unmet;  // surfaces that no ray meets
 };
 enum { SR_STRATEGY_COUNT = 6 };
+extern const struct sr_integrator_model sr_integrator_estimator;
 extern const struct sr_strategy sr_strategies[SR_STRATEGY_COUNT];
 enum { SR_BY_UNIFORM, SR_BY_COSINE, SR_BY_BSDF, SR_BY_UNIFORM_AREA, SR_BY_LIGHT_AREA, SR_BY_LIGHT_SOLID_ANGLE };
 

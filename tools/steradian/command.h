@@ -54,6 +54,9 @@ bool command_parse_units(const struct command *command, const char *text, enum s
 bool command_parse_floats(const struct command *command, const char *option, const char *text, int count,
                           double *values);
 
+/* Whether --estimator help was asked for; it has then been printed. */
+bool command_tells_estimators(int argc, char **argv);
+
 /* ---- images ---- */
 
 /* The endings that images are written with. */

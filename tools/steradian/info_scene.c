@@ -60,7 +60,7 @@ static void print_scene(const char *path, const struct sr_import_result *r, unsi
         printf("               rendered: x %d to %d, y %d to %d [pixel]\n", f->x0, f->x1 - 1, f->y0, f->y1 - 1);
     printf("  filter       %s, radius %g x %g pixels\n", r->filter.model->name, (double)r->filter.radius.x,
            (double)r->filter.radius.y);
-    printf("  integrator   %s\n", r->integrator.model->name);
+    printf("  integrator   %s\n", sr_integrator_label(&r->integrator));
     printf("  sampler      %s, %u samples per pixel, seed %u\n",
            r->sampler == SR_SAMPLER_SOBOL ? "sobol" : "independent", r->spp, r->seed);
     printf("  wavelengths  %g to %g nm\n", (double)SR_LAMBDA_MIN, (double)SR_LAMBDA_MAX);
@@ -114,7 +114,7 @@ static int print_scene_json(const char *path, const struct sr_import_result *r, 
         sr_colour_space(f->space)->name, "imaging_ratio", command_json_quantity(imaging_ratio(f), "1"), "filename",
         command_json_text(f->filename), "filter", "name", r->filter.model->name, "radius_x",
         command_json_number((double)r->filter.radius.x), "radius_y", command_json_number((double)r->filter.radius.y),
-        "unit", "pixel", "integrator", r->integrator.model->name, "sampler", "name",
+        "unit", "pixel", "integrator", sr_integrator_label(&r->integrator), "sampler", "name",
         r->sampler == SR_SAMPLER_SOBOL ? "sobol" : "independent", "samples_per_pixel", (json_int_t)r->spp, "seed",
         (json_int_t)r->seed, "wavelengths", "min", command_json_number((double)SR_LAMBDA_MIN), "max",
         command_json_number((double)SR_LAMBDA_MAX), "unit", "nm", "lights", lights, "counts", "lights",

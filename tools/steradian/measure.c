@@ -28,7 +28,7 @@ static const char help[] =
     "      --samples N        samples of each meter (default: 65536; streams 4096; maps 1024 a cell);\n"
     "                         with --error or --time: the most\n"
     "      --replicates R     independently scrambled nets, 2 or more (default: 16)\n"
-    "      --estimator NAME   (also --integrator) in place of the scene's: path, simplepath, randomwalk, …\n"
+    "      --estimator NAME   (also --integrator) in place of the scene's; --estimator help lists them\n"
     "      --seed S, --threads N, --sampler sobol|independent, --lambda LO,HI, --units WORD\n"
     "                         as of steradian render\n"
     "      --points           lines \"x y z nx ny nz\" [m] on standard input: irradiance there\n"
@@ -316,7 +316,7 @@ static int choose(const struct measure_arguments *a, const struct sr_import_resu
 
 static json_t *settings_json(const struct measure_arguments *a, const struct sr_render_job *job, enum sr_units units)
 {
-    return json_pack("{s:s, s:s, s:s, s:I, s:I, s:o, s:f, s:{s:f, s:f, s:s}}", "units", units == SR_UNITS_SI ? "si" : "photometric", "estimator", job->integrator.model->name, "sampler",
+    return json_pack("{s:s, s:s, s:s, s:I, s:I, s:o, s:f, s:{s:f, s:f, s:s}}", "units", units == SR_UNITS_SI ? "si" : "photometric", "estimator", sr_integrator_label(&job->integrator), "sampler",
                      job->sampler == SR_SAMPLER_SOBOL ? "sobol" : "independent", "seed", (json_int_t)job->seed, "replicates",
                      (json_int_t)(a->settings.replicates ? a->settings.replicates : 16), "target",
                      a->settings.error > 0 ? json_real(a->settings.error) : json_null(), "level", 0.95, "wavelengths", "min", (double)job->lambda.lo, "max",
@@ -406,6 +406,8 @@ static int measure_scene(const struct measure_arguments *a, const struct sr_impo
 
 static int run(int argc, char **argv)
 {
+    if (command_tells_estimators(argc, argv))
+        return 0;
     struct measure_arguments a;
     int code = parse(argc, argv, &a);
     if (code)

@@ -25,8 +25,8 @@ static const char help[] =
     "      --cropwindow X0,X1,Y0,Y1   render this share of the picture\n"
     "      --pixelbounds X0,X1,Y0,Y1  render these pixels\n"
     "      --lambda LO,HI     wavelength range [nm] (default: 360,830)\n"
-    "      --integrator NAME  another estimator than the scene's: path, bdpt, lightpath, simplepath, randomwalk,\n"
-    "                         ambientocclusion\n"
+    "      --estimator NAME[,key=value…]  (also --integrator) in place of the scene's: path, bdpt, or strategies such as\n"
+    "                         uniform-hemisphere+light-area:power; --estimator help lists them\n"
     "      --units WORD       what emission spectra mean: photometric (default: only shapes, as pbrt) or si\n"
     "                         (W m^-2 sr^-1 nm^-1 as they stand); default: the scene's\n"
     "      --sampler KIND     sobol (default) or independent\n"
@@ -163,6 +163,9 @@ static int render_scene(const struct render_arguments *a, const struct sr_import
     struct rendering r = {.arguments = a, .scene = scene, .on_terminal = !a->quiet && isatty(STDERR_FILENO)};
     struct sr_render_job job = make_job(a, scene, a->aov && wants_exr, &r);
     r.job = &job;
+    const char *blind = sr_integrator_blind(&job.integrator, job.scene);
+    if (blind)
+        fprintf(stderr, "warning: %s: estimator %s: %s\n", a->scene, sr_integrator_label(&job.integrator), blind);
     if (a->has_pixel)
         return print_sample(a, &job);
 
@@ -187,6 +190,8 @@ static int render_scene(const struct render_arguments *a, const struct sr_import
 
 static int run(int argc, char **argv)
 {
+    if (command_tells_estimators(argc, argv))
+        return 0;
     render_catch_requests();
     struct render_arguments a;
     int code = render_parse(argc, argv, &a);

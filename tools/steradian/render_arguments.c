@@ -47,6 +47,7 @@ static const struct option long_options[] = {
     {"cropwindow", required_argument, NULL, OPT_CROP},
     {"pixelbounds", required_argument, NULL, OPT_BOUNDS},
     {"lambda", required_argument, NULL, OPT_LAMBDA},
+    {"estimator", required_argument, NULL, OPT_INTEGRATOR},
     {"integrator", required_argument, NULL, OPT_INTEGRATOR},
     {"sampler", required_argument, NULL, OPT_SAMPLER},
     {"exposure", required_argument, NULL, OPT_EXPOSURE},

@@ -78,7 +78,7 @@ static void describe(struct sr_image *image, const struct rendering *r, const st
     ATTRIBUTE("steradian.seed", "%u", r->job->seed);
     ATTRIBUTE("steradian.samplesPerPixel", "%.9g", render_mean_spp(film));
     ATTRIBUTE("steradian.replicates", "%u", r->job->replicates);
-    ATTRIBUTE("steradian.integrator", "%s", r->job->integrator.model->name);
+    ATTRIBUTE("steradian.integrator", "%s", sr_integrator_label(&r->job->integrator));
     ATTRIBUTE("steradian.lambda", "%g..%g nm", (double)r->job->lambda.lo, (double)r->job->lambda.hi);
     ATTRIBUTE("steradian.units", "%s", r->scene->units == SR_UNITS_SI ? "si" : "photometric");
     if (!is_complete)

@@ -115,7 +115,7 @@ static json_t *settings_json(const struct rendering *r, const struct sr_film *fi
                      command_json_text(r->arguments->scene), "units",
                      r->scene->units == SR_UNITS_SI ? "si" : "photometric", "width", (int)film->width, "height", (int)film->height,
                      "size_unit", "pixel", "spp", render_mean_spp(film), "seed", (json_int_t)job->seed, "replicates",
-                     (json_int_t)job->replicates, "adaptive", job->adaptive.is_on, "integrator", job->integrator.model->name, "sampler",
+                     (json_int_t)job->replicates, "adaptive", job->adaptive.is_on, "integrator", sr_integrator_label(&job->integrator), "sampler",
                      job->sampler == SR_SAMPLER_SOBOL ? "sobol" : "independent", "wavelengths", "min",
                      command_json_number((double)job->lambda.lo), "max", command_json_number((double)job->lambda.hi),
                      "unit", "nm");

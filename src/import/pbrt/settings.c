@@ -243,22 +243,22 @@ static bool is_done_by_path(const char *name)
     return false;
 }
 
+/* The file's own integrator; or what the options name, with the file's numbers where both have them. */
 static sr_status build_integrator(struct sr_pbrt_build *b, enum sr_light_choice *choice)
 {
     struct sr_pbrt_entity e = b->d->integrator;
-    const char *wanted = b->options->integrator ? b->options->integrator : e.model, *light_sampler = "bvh";
-    bool is_other = strcmp(wanted, e.model) != 0;
-    if (is_done_by_path(wanted)) {
-        if (e.where.file && !is_other)
+    const char *other = b->options->integrator, *light_sampler = "bvh";
+    if (is_done_by_path(e.model)) {
+        if (e.where.file && !other)
             sr_pbrt_warn(b->d, e.where,
                          "Integrator \"%s\" is not supported yet: \"path\" renders this scene instead, with the same "
                          "expectation",
-                         wanted);
-        is_other = is_other || strcmp(wanted, "path") != 0;
-        wanted = "path";
+                         e.model);
+        e.model = "path";
     }
-    e.model = wanted;
-    const struct sr_integrator_model *m = sr_integrator_model_find(wanted);
+    if (other && !sr_integrator_model_find(e.model))
+        e.model = "path";
+    const struct sr_integrator_model *m = sr_integrator_model_find(e.model);
     if (!m) {
         const char *names[16];
         size_t n = 0;
@@ -275,11 +275,14 @@ static sr_status build_integrator(struct sr_pbrt_build *b, enum sr_light_choice 
     *choice = strcmp(light_sampler, "power") == 0     ? SR_LIGHTS_POWER
               : strcmp(light_sampler, "uniform") == 0 ? SR_LIGHTS_UNIFORM
                                                       : SR_LIGHTS_BVH;
-    if (status == SR_OK && !is_other)
+    if (status == SR_OK && !other)
         sr_pbrt_warn_unused(b, &e, m->params, NULL);
     if (status == SR_OK && m->prepare)
         status = m->prepare(self, b->arena, b->error);
-    b->result->integrator = (struct sr_integrator){m, self};
+    struct sr_integrator own = {m, self};
+    b->result->integrator = own;
+    if (status == SR_OK && other)
+        status = sr_integrator_parse(is_done_by_path(other) ? "path" : other, &own, b->arena, &b->result->integrator, b->error);
     return status;
 }
 
