@@ -63,6 +63,10 @@ void sr_image_set_unit(struct sr_image *image, uint32_t channel, const char *uni
  * colour. */
 bool sr_image_find_rgb(const struct sr_image *image, int rgb[3]);
 
+/* Luminance is the sum of weight times channel: of R, G, B by their primaries, of X, Y, Z, of Y, or of the only channel.
+ * False: the picture has no colour. */
+bool sr_image_luminance_weights(const struct sr_image *image, int channel[3], double weight[3]);
+
 static inline size_t sr_image_index(const struct sr_image *image, uint32_t x, uint32_t y)
 {
     return ((size_t)y * image->width + x) * image->channel_count;

@@ -113,6 +113,24 @@ static struct colour find_colour(const struct sr_image *image)
     return colour;
 }
 
+bool sr_image_luminance_weights(const struct sr_image *image, int channel[3], double weight[3])
+{
+    double m[3][3], white[3];
+    bool is_rgb = sr_image_find_rgb(image, channel);
+    memcpy(weight, (double[3]){1, 0, 0}, 3 * sizeof *weight);
+    int y = sr_image_find_channel(image, "Y");
+    if (y >= 0 && sr_image_find_channel(image, "X") >= 0)
+        channel[0] = channel[1] = channel[2] = y;
+    else if (!is_rgb)
+        return false;
+    else if (channel[0] != channel[1]) {
+        bool ok = xyz_from_rgb(image->has_chromaticities ? image->chromaticities : srgb_primaries, m, white) || xyz_from_rgb(srgb_primaries, m, white);
+        memcpy(weight, m[1], 3 * sizeof *weight);
+        return ok;
+    }
+    return true;
+}
+
 static void get_colour(const struct sr_image *image, const struct colour *colour, size_t pixel, float rgb[3])
 {
     float v[3];

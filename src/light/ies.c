@@ -2,7 +2,7 @@
 /* A point that shines as a luminaire was measured to: IES LM-63 or EULUMDAT.
  *
  *     I(d) = scale I_file(C, gamma) s(lambda),   INTEGRAL s ybar dlambda = 1          [cd]
- *     Phi  = scale INTEGRAL I_file dw, or with `power`: Phi = scale * power           [lm]
+ *     Phi  = scale INTEGRAL I_file dw, or with `power`: Phi = scale * power           [lm]; [W] of absolute spectra
  *
  * The luminaire hangs in its own space: gamma 0 along -z, C 0 along +x, C 90 along +y; scenes whose up is y turn it by
  * Rotate -90 1 0 0. Limits: far field: without extent, so that receivers nearer than about five times the luminaire's size get
@@ -20,7 +20,6 @@ struct ies {
     const struct sr_photometry *photometry; // derived
     sr_vec3 p;                              // [m]
     sr_vec3 axis;                           // [1] local -z
-    float factor;                           // [1] of the file's candelas, with the mean brightness of the spectrum
     float flux, choice;                     // [lm], [cd] of the peak
     struct sr_photometry_guide guide;       // to draw directions where paths begin
     float determinant;                      // of world to light: a transform that is no rotation squeezes solid angles
@@ -57,9 +56,11 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     m->axis = sr_normalize(sr_transform_vector(&m->common.light_to_world, (sr_vec3){0, 0, -1}));
     if (!sr_is_finite(m->p) || !sr_is_finite(m->axis))
         return sr_fail(error, SR_ERROR_INPUT, "the place of an ies light is not finite");
-    if (sr_light_normalise(&m->I, m->common.space, 1, error))
-        return error->status;
-    m->factor = (float)((double)m->scale * (m->power > 0 ? (double)m->power / flux : 1));
+    // the file is in candela; where a power is given, that is in the scene's unit, and the file is a shape
+    sr_status status = m->power > 0 ? sr_light_set_brightness(&m->I, m->common.space, m->common.is_absolute, m->scale, (float)((double)m->power / flux), error)
+                                    : sr_light_normalise(&m->I, m->common.space, m->scale, error);
+    if (status != SR_OK)
+        return status;
     if (!sr_photometry_guide_build(p, arena, &m->guide))
         return sr_fail(error, SR_ERROR_RESOURCE, "no memory for the density of %s", m->filename);
     const struct sr_transform *t = &m->common.light_to_world;
@@ -67,17 +68,16 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     for (int i = 0; i < 3; ++i)
         rows[i] = (sr_vec3){t->inverse[i][0], t->inverse[i][1], t->inverse[i][2]};
     m->determinant = fabsf(sr_dot(rows[0], sr_cross(rows[1], rows[2])));
-    double luminous = sr_spd_luminous_integral(&m->I);
-    m->flux = (float)(luminous * (double)m->factor * flux);
-    m->choice = (float)((double)(m->factor * sr_light_choice_weight(&m->I)) * peak);
-    return isfinite(m->factor) && isfinite(m->flux) ? SR_OK : sr_fail(error, SR_ERROR_INPUT, "%s: the emission is not finite", m->filename);
+    m->flux = (float)(sr_spd_luminous_integral(&m->I) * flux);
+    m->choice = (float)((double)sr_light_choice_weight(&m->I) * peak);
+    return isfinite(m->flux) && isfinite(m->choice) ? SR_OK : sr_fail(error, SR_ERROR_INPUT, "%s: the emission is not finite", m->filename);
 }
 
-/* toward w in the world [cd] of the white */
+/* of the file toward w in the world [cd] */
 static float intensity(const struct ies *m, sr_vec3 w)
 {
     sr_vec3 d = sr_inverse_vector(&m->common.light_to_world, w);
-    return m->factor * (float)sr_photometry_intensity_along(m->photometry, d);
+    return (float)sr_photometry_intensity_along(m->photometry, d);
 }
 
 static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)

@@ -50,6 +50,39 @@ static uint32_t value_pixel(const struct sr_plot_panel *panel, const struct sr_p
     return sr_canvas_pixel(sr_plot_scale_colour(panel->scale, t));
 }
 
+/* Lines where the values, linear between the middles of their meshes, pass through a level. */
+static void draw_contours(struct plot_canvas *canvas, struct plot_box box, const struct sr_plot_panel *panel, double level)
+{
+    double wide = (box.x1 - box.x0) / panel->columns, tall = (box.y1 - box.y0) / panel->rows;
+    for (uint32_t j = 0; j + 1 < panel->rows; ++j)
+        for (uint32_t i = 0; i + 1 < panel->columns; ++i) {
+            static const int corner[5][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}};
+            double v[5], points[4][2];
+            int count = 0;
+            for (int k = 0; k < 5; ++k)
+                v[k] = panel->values[(size_t)(j + corner[k][1]) * panel->columns + i + corner[k][0]] - level;
+            for (int k = 0; k < 4; ++k) {
+                if ((v[k] < 0) == (v[k + 1] < 0) || isnan(v[k]) || isnan(v[k + 1]))
+                    continue;
+                double t = v[k] / (v[k] - v[k + 1]);
+                points[count][0] = box.x0 + wide * (i + 0.5 + corner[k][0] + t * (corner[k + 1][0] - corner[k][0]));
+                points[count++][1] = box.y1 - tall * (j + 0.5 + corner[k][1] + t * (corner[k + 1][1] - corner[k][1]));
+            }
+            for (int k = 0; k + 1 < count; k += 2) {
+                cairo_move_to(canvas->cr, points[k][0], points[k][1]);
+                cairo_line_to(canvas->cr, points[k + 1][0], points[k + 1][1]);
+            }
+        }
+}
+
+/* The largest box of the map's proportions in the cell, right px kept free. */
+static struct plot_box picture_box(struct plot_box cell, const struct sr_plot_panel *panel, double right)
+{
+    double size = fmin((cell.x1 - cell.x0 - right) / panel->columns, (cell.y1 - cell.y0 - 14) / panel->rows);
+    double x = (cell.x0 + cell.x1 - right - size * panel->columns) / 2, y = (cell.y0 + cell.y1 - size * panel->rows) / 2;
+    return (struct plot_box){x, y, x + size * panel->columns, y + size * panel->rows};
+}
+
 sr_status sr_plot_draw_map(struct plot_canvas *canvas, struct plot_box cell, const struct sr_plot_panel *panel,
                            struct sr_error *error)
 {
@@ -65,13 +98,13 @@ sr_status sr_plot_draw_map(struct plot_canvas *canvas, struct plot_box cell, con
     if (!panel->pixels && !sr_plot_axis_settle(&z, &range, true))
         return sr_fail(error, SR_ERROR_INPUT, "the panel \"%s\" has no finite%s value",
                        panel->title ? panel->title : "", z.is_log ? " and positive" : "");
-    if (x.from == x.to || y.from == y.to)
+    if (!panel->has_no_frame && (x.from == x.to || y.from == y.to))
         return sr_fail(error, SR_ERROR_INPUT, "the map \"%s\" does not tell what its axes reach from and to",
                        panel->title ? panel->title : "");
     cell = sr_plot_title(canvas, cell, panel->title);
     struct sr_plot_ticks ticks;
     double right = panel->pixels ? 0 : scale_width(canvas, &z, cell.y1 - cell.y0 - 60, &ticks);
-    struct plot_box box = sr_plot_frame(canvas, cell, &x, &y, right, false);
+    struct plot_box box = panel->has_no_frame ? picture_box(cell, panel, right) : sr_plot_frame(canvas, cell, &x, &y, right, false);
 
     // each pixel of the picture lies within one value: no reader blurs them
     uint32_t wide = (uint32_t)ceil((box.x1 - box.x0) * canvas->pixels);
@@ -89,11 +122,19 @@ sr_status sr_plot_draw_map(struct plot_canvas *canvas, struct plot_box cell, con
         }
     if (sr_canvas_pixels(canvas, pixels, wide, tall, box, false, error) != SR_OK)
         return error->status;
+    if (panel->has_contours && !panel->pixels) {
+        for (int i = 0; i < ticks.count; ++i)
+            draw_contours(canvas, box, panel, ticks.at[i]);
+        sr_canvas_colour(canvas, (struct sr_plot_colour){1, 1, 1, 0.9f});
+        cairo_set_line_width(canvas->cr, 0.8);
+        cairo_stroke(canvas->cr);
+    }
     sr_canvas_colour(canvas, PLOT_SOFT_INK);
     cairo_set_line_width(canvas->cr, 1);
     cairo_rectangle(canvas->cr, box.x0, box.y0, box.x1 - box.x0, box.y1 - box.y0);
     cairo_stroke(canvas->cr);
-    return panel->pixels ? SR_OK : draw_scale(canvas, box, cell.x1, &z, &ticks, panel->scale, error);
+    double edge = panel->has_no_frame ? fmin(cell.x1, box.x1 + right) : cell.x1;
+    return panel->pixels ? SR_OK : draw_scale(canvas, box, edge, &z, &ticks, panel->scale, error);
 }
 
 sr_status sr_plot_draw_picture(struct plot_canvas *canvas, struct plot_box cell, const struct sr_plot_panel *panel,

@@ -117,6 +117,8 @@ struct sr_plot_panel {
     const uint8_t *pixels; // [1] of a picture: sRGB, three bytes each, the top row first; of a map: in place of values
     uint32_t rows, columns;
     enum sr_plot_scale scale;
+    bool has_no_frame; // a map without its x and y axes: a picture of values, its meshes as square as the box lets them be
+    bool has_contours; // of a map: lines at the ticks of its scale
 
     const struct sr_plot_body *bodies;
     const struct sr_plot_arrow *arrows;

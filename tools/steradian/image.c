@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* steradian image: pictures from one format into another, cut, toned, or told as numbers. */
 #include "command.h"
+#include "image_false.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -18,6 +19,12 @@ static const char help[] =
     "      --crop X0,Y0,W,H   this part of the picture [pixel]\n"
     "      --channel NAMES    these channels or groups only, such as depth or albedo or SE.R,SE.G,SE.B; three of them\n"
     "                         are shown as red, green and blue, one is shown as grey\n"
+    "      --false-colour     a figure, .png or .svg: luminance (or the one channel chosen) in colours, with a legend\n"
+    "      --scale LO,HI      of --false-colour: the ends of the legend [unit of the channel] (default: 0 and what\n"
+    "                         99.9 % of the pixels stay below)\n"
+    "      --log              of --false-colour: a logarithmic legend\n"
+    "      --contours         of --false-colour: lines at the numbers of the legend\n"
+    "      --title TEXT       of --false-colour: above the figure\n"
     "      --stats            mean, deviation, percentiles and odd values of each channel\n"
     "      --json             the statistics as JSON on standard output\n"
     "  -q, --quiet            no notes; warnings and errors stay\n"
@@ -26,16 +33,18 @@ static const char help[] =
     "  steradian image cornell.exr -o cornell.png --exposure -4 --tone filmic\n"
     "  steradian image cornell.exr -o albedo.png --channel albedo --exposure 0\n"
     "  steradian image cornell.exr --crop 100,100,64,64 --channel R,G,B --stats\n"
-    "  steradian image sky.hdr -o sky.exr\n";
+    "  steradian image sky.hdr -o sky.exr\n"
+    "  steradian image room.exr --false-colour --scale 1,1000 --log --contours -o luminance.png\n";
 
 struct arguments {
     const char *input, *output, *channels;
-    bool has_exposure, has_tone, has_crop, stats, json, quiet;
+    bool has_exposure, has_tone, has_crop, stats, json, quiet, is_false;
+    struct false_colour false_colour;
     double exposure_EV, crop[4];
     enum sr_tone_operator tone;
 };
 
-enum { OPT_EXPOSURE = 256, OPT_TONE, OPT_CROP, OPT_CHANNEL, OPT_STATS, OPT_JSON };
+enum { OPT_EXPOSURE = 256, OPT_TONE, OPT_CROP, OPT_CHANNEL, OPT_STATS, OPT_JSON, OPT_FALSE, OPT_SCALE, OPT_LOG, OPT_CONTOURS, OPT_TITLE };
 
 static const struct option long_options[] = {
     {"outfile", required_argument, NULL, 'o'},
@@ -43,6 +52,12 @@ static const struct option long_options[] = {
     {"tone", required_argument, NULL, OPT_TONE},
     {"crop", required_argument, NULL, OPT_CROP},
     {"channel", required_argument, NULL, OPT_CHANNEL},
+    {"false-colour", no_argument, NULL, OPT_FALSE},
+    {"false-color", no_argument, NULL, OPT_FALSE},
+    {"scale", required_argument, NULL, OPT_SCALE},
+    {"log", no_argument, NULL, OPT_LOG},
+    {"contours", no_argument, NULL, OPT_CONTOURS},
+    {"title", required_argument, NULL, OPT_TITLE},
     {"stats", no_argument, NULL, OPT_STATS},
     {"json", no_argument, NULL, OPT_JSON},
     {"quiet", no_argument, NULL, 'q'},
@@ -77,6 +92,7 @@ static int parse(int argc, char **argv, struct arguments *a)
 {
     const struct command *c = &command_image;
     *a = (struct arguments){0};
+    struct false_colour *f = &a->false_colour;
     int option, index = 0;
     bool ok = true;
     while (ok && (option = command_next_option(argc, argv, ":o:q", long_options, &index)) != -1)
@@ -102,6 +118,22 @@ static int parse(int argc, char **argv, struct arguments *a)
         case OPT_CHANNEL:
             a->channels = optarg;
             break;
+        case OPT_FALSE:
+            a->is_false = true;
+            break;
+        case OPT_SCALE:
+            f->has_scale = true;
+            ok = command_parse_floats(c, "scale", optarg, 2, f->scale);
+            break;
+        case OPT_LOG:
+            f->is_log = true;
+            break;
+        case OPT_CONTOURS:
+            f->has_contours = true;
+            break;
+        case OPT_TITLE:
+            f->title = optarg;
+            break;
         case OPT_STATS:
             a->stats = true;
             break;
@@ -117,7 +149,16 @@ static int parse(int argc, char **argv, struct arguments *a)
         return command_usage(c, optind == argc ? "a picture was expected" : "one picture was expected, there are %d",
                              argc - optind);
     a->input = argv[optind];
-    if (a->output && !command_is_image_ending(a->output))
+    if ((f->has_scale || f->is_log || f->has_contours || f->title) && !a->is_false)
+        return command_usage(c, "--scale, --log, --contours and --title belong to --false-colour");
+    if (f->has_scale && !(f->scale[1] > f->scale[0] && f->scale[0] >= 0 && (f->scale[0] > 0 || !f->is_log)))
+        return command_usage(c, "--scale %g,%g: LO below HI was expected%s", f->scale[0], f->scale[1], f->is_log ? ", and above 0" : "");
+    if (a->is_false) {
+        if (!a->output || !(sr_path_has_ending(a->output, ".png") || sr_path_has_ending(a->output, ".svg")))
+            return command_usage(c, "--false-colour needs -o with the ending .png or .svg");
+        if (a->has_exposure || a->has_tone)
+            return command_usage(c, "--false-colour shows values as they are: --exposure and --tone do not belong to it");
+    } else if (a->output && !command_is_image_ending(a->output))
         return command_usage(c, "%s: the ending .exr, .png, .pfm or .hdr was expected", a->output);
     if ((a->has_exposure || a->has_tone) && !(a->output && sr_path_has_ending(a->output, ".png")))
         return command_usage(c, "--exposure and --tone are for a .png; other formats keep the values and their units");
@@ -134,7 +175,7 @@ static sr_status pick_channels(const struct arguments *a, const struct sr_image 
     struct sr_arena arena = {0};
     uint32_t count = 0, *indices = sr_arena_alloc(&arena, image->channel_count * sizeof *indices);
     const char **names = sr_arena_alloc(&arena, image->channel_count * sizeof *names);
-    bool is_shown = a->output && !sr_path_has_ending(a->output, ".exr");
+    bool is_shown = a->output && !a->is_false && !sr_path_has_ending(a->output, ".exr");
     *picked = NULL;
     if (!indices || !names)
         sr_fail(error, SR_ERROR_RESOURCE, "not enough memory to choose channels");
@@ -220,6 +261,8 @@ static int print_statistics(const struct arguments *a, const struct sr_image *im
 
 static sr_status write_output(const struct arguments *a, const struct sr_image *image, struct sr_error *error)
 {
+    if (a->is_false)
+        return image_write_false_colour(a->output, image, &a->false_colour, error);
     bool is_png = sr_path_has_ending(a->output, ".png");
     float exposure_EV = a->has_exposure ? (float)a->exposure_EV : 0;
     if (is_png && image->floats && !a->has_exposure)
@@ -247,7 +290,7 @@ static sr_status prepare(const struct arguments *a, struct sr_image **image, str
         *image = part;
     }
     // bytes stay bytes unless somebody wants other light in them
-    if ((a->has_exposure || a->has_tone || a->channels) && sr_image_to_float(*image, error) != SR_OK)
+    if ((a->has_exposure || a->has_tone || a->channels || a->is_false) && sr_image_to_float(*image, error) != SR_OK)
         return error->status;
     if (a->channels && pick_channels(a, *image, &part, error) == SR_OK) {
         sr_image_free(*image);
