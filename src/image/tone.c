@@ -119,15 +119,13 @@ bool sr_image_luminance_weights(const struct sr_image *image, int channel[3], do
     bool is_rgb = sr_image_find_rgb(image, channel);
     memcpy(weight, (double[3]){1, 0, 0}, 3 * sizeof *weight);
     int y = sr_image_find_channel(image, "Y");
-    if (y >= 0 && sr_image_find_channel(image, "X") >= 0)
-        channel[0] = channel[1] = channel[2] = y;
-    else if (!is_rgb)
+    if (is_rgb && channel[0] != channel[1])
+        return (xyz_from_rgb(image->has_chromaticities ? image->chromaticities : srgb_primaries, m, white) ||
+                xyz_from_rgb(srgb_primaries, m, white)) &&
+               memcpy(weight, m[1], 3 * sizeof *weight);
+    if (y < 0 && !is_rgb && image->channel_count > 1)
         return false;
-    else if (channel[0] != channel[1]) {
-        bool ok = xyz_from_rgb(image->has_chromaticities ? image->chromaticities : srgb_primaries, m, white) || xyz_from_rgb(srgb_primaries, m, white);
-        memcpy(weight, m[1], 3 * sizeof *weight);
-        return ok;
-    }
+    channel[0] = channel[1] = channel[2] = y >= 0 ? y : 0;
     return true;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What looks: perspective, orthographic, spherical: one file a kind. */
+/* What looks: perspective, orthographic, spherical, fisheye: one file a kind. */
 #ifndef SR_SENSOR_SENSOR_H
 #define SR_SENSOR_SENSOR_H
 
@@ -51,6 +51,17 @@ struct sr_sensor {
     const struct sr_sensor_model *model;
     const void *self;
 };
+
+/* ---- fisheye projections: fisheye.c; rim: the angle from the axis at the rim of the disk [rad] ---- */
+
+enum sr_fisheye { SR_FISHEYE_EQUIDISTANT, SR_FISHEYE_EQUISOLID, SR_FISHEYE_ORTHOGRAPHIC, SR_FISHEYE_STEREOGRAPHIC };
+double sr_fisheye_angle(enum sr_fisheye kind, double r, double rim); // [rad] from the axis, r = 1 at the rim
+/* The direction in the camera's space (z forward, y up) of a point of the picture [pixel]; false: more than three pixels outside of the
+ * disk. */
+bool sr_fisheye_direction(enum sr_fisheye kind, double rim, struct sr_sensor_raster raster, double x, double y, double d[3]);
+/* The solid angle [sr] that a pixel sees, exactly, and that weighed by cos theta; NaN for the latter where the disk sees
+ * behind. */
+void sr_fisheye_pixel(enum sr_fisheye kind, double rim, struct sr_sensor_raster raster, uint32_t x, uint32_t y, double *omega, double *projected);
 
 /* Common to the projective cameras (perspective, orthographic); their params tables list these too. Each camera's
  * struct begins with struct sr_sensor_common. */

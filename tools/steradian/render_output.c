@@ -64,6 +64,25 @@ sr_status render_check_memory(const struct sr_render_job *job, struct sr_error *
 
 /* ---- writing ---- */
 
+/* "fisheye; mapping equisolid; fov 180": words and numbers of the camera, so that others know where each pixel looks. */
+static void describe_camera(struct sr_image *image, const struct sr_sensor *sensor, struct sr_error *error)
+{
+    char text[400];
+    int n = snprintf(text, sizeof text, "%s", sensor->model->name);
+    for (const struct sr_param *p = sensor->model->params; p->name && n < (int)sizeof text; ++p) {
+        const char *value = (const char *)sensor->self + p->offset;
+        if (p->kind == SR_PARAM_FLOAT && isfinite(*(const float *)(const void *)value))
+            n += snprintf(text + n, sizeof text - (size_t)n, "; %s %g", p->name, (double)*(const float *)(const void *)value);
+        if (p->kind != SR_PARAM_ENUM)
+            continue;
+        const char *choice = p->text;
+        for (int32_t skip = *(const int32_t *)(const void *)value; skip > 0 && strchr(choice, '|'); --skip)
+            choice = strchr(choice, '|') + 1;
+        n += snprintf(text + n, sizeof text - (size_t)n, "; %s %.*s", p->name, (int)strcspn(choice, "|"), choice);
+    }
+    sr_image_set_attribute(image, "steradian.camera", text, error);
+}
+
 static void describe(struct sr_image *image, const struct rendering *r, const struct sr_film *film, double elapsed_s, bool is_complete,
                      struct sr_error *error)
 {
@@ -79,6 +98,7 @@ static void describe(struct sr_image *image, const struct rendering *r, const st
     ATTRIBUTE("steradian.samplesPerPixel", "%.9g", render_mean_spp(film));
     ATTRIBUTE("steradian.replicates", "%u", r->job->replicates);
     ATTRIBUTE("steradian.integrator", "%s", sr_integrator_label(&r->job->integrator));
+    describe_camera(image, &r->job->sensor, error);
     ATTRIBUTE("steradian.lambda", "%g..%g nm", (double)r->job->lambda.lo, (double)r->job->lambda.hi);
     ATTRIBUTE("steradian.units", "%s", r->scene->units == SR_UNITS_SI ? "si" : "photometric");
     if (!is_complete)
