@@ -6,7 +6,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 OUT ?= out
 SECONDS ?= 60
 
-.PHONY: all render test test-asan test-tsan fuzz mutants bench check format install clean packages
+.PHONY: all render test test-asan test-tsan fuzz mutants validate bench check format install clean packages
 
 all: packages
 	@cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release >$(BUILD).log 2>&1 || { cat $(BUILD).log; exit 1; }
@@ -41,6 +41,11 @@ fuzz: packages
 	  $$(command -v clang >/dev/null && echo -DCMAKE_C_COMPILER=clang) >/dev/null
 	@cmake --build build-fuzz --parallel $(JOBS) --target fuzz_programs >build-fuzz.log 2>&1 || { cat build-fuzz.log; exit 1; }
 	scripts/fuzz build-fuzz/fuzz $(SECONDS)
+
+# scenes whose answers are known, to a relative standard uncertainty of GOAL
+GOAL ?= 0.0125%
+validate: all
+	$(BUILD)/steradian validate --goal $(GOAL) --markdown docs/validation.md
 
 # wrong versions of the program, each of which a test must catch
 mutants: packages

@@ -37,13 +37,13 @@ def deg(a):
     return a * PI / 180
 
 
-def case(name, ident, what, source, content, readings, depth=1, head=""):
+def case(name, ident, what, source, content, readings, depth=1, head="", integrator="path"):
     """One scene. readings: (meter's name, expected value, unit, relative uncertainty of that value)."""
     lines = [f"# {what}", f"# {source}"]
     for meter, value, unit, _ in readings:
         lines.append(f"#   {meter}: {value:.12g}{' ' + unit if unit != '1' else ''}")
-    integrator = "" if depth is None else f'Integrator "path" "integer maxdepth" {depth}\n'
-    files[f"scenes/{name}.pbrt"] = ("\n".join(lines) + "\n" + integrator + head + content).encode()
+    lines.append(f'Integrator "{integrator}" "integer maxdepth" {depth}' + (' "bool samplelights" false' if integrator == "simplepath" else ""))
+    files[f"scenes/{name}.pbrt"] = ("\n".join(lines) + "\n" + head + content).encode()
     for meter, value, unit, within in readings:
         cases.append((ident if len(readings) == 1 else f"{ident} {meter}", f"scenes/{name}.pbrt", meter, f"{value:.15g}", unit, f"{within:.2g}", what, source))
 
@@ -78,11 +78,11 @@ def irradiance(name, ident, what, source, content, E, p=(0, 0, 0), n=(0, 0, 1), 
     case(name, ident, what, source, view(eye, p, up=t) + patch + f'AttributeBegin\n{content}AttributeEnd\n' + meter, [("E", E, "lx", within)], head=head)
 
 
-def radiance(name, ident, what, source, content, L, o, d, within=0.0, depth=1, name_of="L"):
-    meter = f'#@ Meter "radiance" "string name" "{name_of}" "point3 p" {v(*o)} "vector3 d" {v(*d)}\n'
+def radiance(name, ident, what, source, content, L, o, d, within=0.0, depth=1, head="", integrator="path"):
+    meter = f'#@ Meter "radiance" "string name" "L" "point3 p" {v(*o)} "vector3 d" {v(*d)}\n'
     at = [o[i] + d[i] for i in range(3)]
     up = (0, 1, 0) if abs(d[1]) < 0.9 else (1, 0, 0)
-    case(name, ident, what, source, view(o, at, up=up) + content + meter, [(name_of, L, "cd/m^2", within)], depth=depth)
+    case(name, ident, what, source, view(o, at, up=up) + content + meter, [("L", L, "cd/m^2", within)], depth=depth, head=head, integrator=integrator)
 
 
 # ---- A: points and distant light ----
@@ -225,7 +225,7 @@ def furnace(rho, shape, text, depth):
     n = math.ceil(math.log(1e-8) / math.log(rho)) if depth is None else depth
     radiance(f"furnace_{shape}_{rho:g}" + ("" if depth is None else f"_depth{depth}"), "D1b" if depth else "D1" if rho == 0.8 else "D1 class",
              f"closed {shape} whose walls glow with 1 cd/m^2 and reflect {rho:g}" + (f", {depth} bounces" if depth else ""), "L = Le (1 - rho^(n+1))/(1 - rho)",
-             grey(rho) + GLOW_BOTH + text, (1 - rho ** (n + 1)) / (1 - rho), (0.11, -0.07, 0.05), (0.36, 0.48, 0.8), depth=n)
+             grey(rho) + GLOW_BOTH + text, (1 - rho ** (n + 1)) / (1 - rho), (0.11, -0.07, 0.05), (0.36, 0.48, 0.8), depth=n, integrator="simplepath")
 
 
 CUBE = 'Shape "bilinearmesh" "point3 P" [-1 -1 -1 1 -1 -1 -1 1 -1 1 1 -1 -1 -1 1 1 -1 1 -1 1 1 1 1 1] ' \
@@ -367,7 +367,10 @@ def skies():
                through(overcast, -1 / 6, 1 / 6, -1 / 6, 1 / 6), within=1e-4)
     # a window in a facade: 2 m wide, from 1 m to 2 m above the receiver, which looks up, 3 m behind it
     wall = BLACK + "".join(f'Shape "bilinearmesh" "point3 P" {v(3, y0, z0, 3, y1, z0, 3, y0, z1, 3, y1, z1)}\n'
-                           for y0, y1, z0, z1 in ((-1e4, -1, -0.01, 1e4), (1, 1e4, -0.01, 1e4), (-1, 1, -0.01, 1), (-1, 1, 2, 1e4)))
+                           for y0, y1, z0, z1 in ((-9, -1, -0.01, 4), (1, 9, -0.01, 4), (-1, 1, -0.01, 1), (-1, 1, 2, 4))) + \
+        f'Shape "bilinearmesh" "point3 P" {v(-3, -9, 4, 3, -9, 4, -3, 9, 4, 3, 9, 4)}\n' \
+        f'Shape "bilinearmesh" "point3 P" {v(-3, -9, -0.01, -3, 9, -0.01, -3, -9, 4, -3, 9, 4)}\n' + \
+        "".join(f'Shape "bilinearmesh" "point3 P" {v(-3, y, -0.01, 3, y, -0.01, -3, y, 4, 3, y, 4)}\n' for y in (-9, 9))
 
     def under_edge(z):  # a receiver that looks up, below the middle of a half-infinite strip: the part of the window below height z
         return 2 * 0.5 * (math.atan(1 / 3) - 3 / math.hypot(3, z) * math.atan(1 / math.hypot(3, z)))
@@ -421,8 +424,8 @@ def lamps():
                    BLACK + f'AreaLightSource "diffuse" "float power" 100\nReverseOrientation Shape "disk" "float height" 1 "float radius" {r:g}\n', 100 / (PI * (r * r + 1)))
     irradiance("lamp_point", "7.96 lx", "isotropic point of 100 lm, 1 m above", "E = Phi/(4 pi r^2)", 'LightSource "point" "point3 from" [0 0 1] "float power" 100\n', 100 / (4 * PI))
     for kelvin, luminance in ((2856, 19749726.1611),):
-        radiance(f"blackbody_{kelvin}", "I11b.2856", f"blackbody of {kelvin} K in SI units: luminance", "683 lm/W INTEGRAL L V", '#@ Option "string units" "si"\n' + BLACK +
-                 f'AreaLightSource "diffuse" "blackbody L" {kelvin}\nShape "disk" "float radius" 1\n', luminance, (0, 0, 1), (0, 0, -1), within=1e-5)
+        radiance(f"blackbody_{kelvin}", "I11b.2856", f"blackbody of {kelvin} K in SI units: luminance", "683 lm/W INTEGRAL L V", BLACK +
+                 f'AreaLightSource "diffuse" "blackbody L" {kelvin}\nShape "disk" "float radius" 1\n', luminance, (0, 0, 1), (0, 0, -1), within=1e-5, head='#@ Option "string units" "si"\n')
 
 
 def build():

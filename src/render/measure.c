@@ -35,7 +35,7 @@ static void run_unit(void *context, uint64_t i)
 static void run_round(const struct measuring *m, uint64_t n, struct measure_sums *units, double *unit_channels, struct measure_sums *total)
 {
     double *channels = total->channels;
-    *total = (struct measure_sums){.channels = channels};
+    *total = (struct measure_sums){.least = INFINITY, .channels = channels};
     memset(channels, 0, (size_t)m->replicates * m->channels * sizeof *channels);
     int threads = m->job->threads > 0 ? m->job->threads : sr_thread_count();
     uint32_t batch_units = 1;
@@ -45,7 +45,7 @@ static void run_round(const struct measuring *m, uint64_t n, struct measure_sums
         uint32_t count = b.units * m->replicates;
         memset(unit_channels, 0, (size_t)count * m->channels * sizeof *unit_channels);
         for (uint32_t i = 0; i < count; ++i)
-            units[i] = (struct measure_sums){.channels = unit_channels + (size_t)i * m->channels};
+            units[i] = (struct measure_sums){.least = INFINITY, .channels = unit_channels + (size_t)i * m->channels};
         double start_s = sr_clock_s();
         sr_parallel_for(threads, count, run_unit, &b);
         if (measure_is_cancelled(m->job))
@@ -57,6 +57,7 @@ static void run_round(const struct measuring *m, uint64_t n, struct measure_sums
             total->dropped += u->dropped;
             total->total += u->total;
             total->largest = fmax(total->largest, u->largest);
+            total->least = fmin(total->least, u->least);
             for (uint32_t c = 0; c < m->channels; ++c)
                 channels[(i / b.units) * m->channels + c] += u->channels[c];
         }
@@ -80,6 +81,14 @@ static struct sr_quantity with_rounding(struct sr_quantity q, double rounding)
     return q;
 }
 
+/* Nets count evenly: of n samples that are a or b, all replicates may hold the same number of each, although the share of b
+ * is no multiple of 1/n. What such replicates cannot show is at most what 3 samples in all would change (the rule of three
+ * at 95 %, as where nothing is found), so that u is taken to be half of that at least. [1] of the value */
+static double resolution(const struct measure_sums *total)
+{
+    return total->total > 0 ? 1.5 * (total->largest - total->least) / total->total : 0;
+}
+
 static struct sr_quantity reading_of(const struct measuring *m, const struct measure_sums *total, uint32_t channel, struct sr_unit unit)
 {
     struct sr_tally tally = {0};
@@ -87,6 +96,7 @@ static struct sr_quantity reading_of(const struct measuring *m, const struct mea
     for (uint32_t r = 0; r < m->replicates; ++r)
         sr_tally_add(&tally, total->channels[(size_t)r * m->channels + channel] / n);
     struct sr_quantity q = sr_quantity_of_tally(&tally, unit);
+    q.u = fmax(q.u, resolution(total) * fabs(q.value));
     return with_rounding(q, 1e-6 * fabs(q.value));
 }
 

@@ -10,7 +10,7 @@ enum { MEASURE_X = SR_SYSTEM_COUNT, MEASURE_Z, MEASURE_BINS };
 
 struct measure_sums {
     uint64_t samples, hits, dropped; // hits: samples that found light; dropped: not finite
-    double largest, total;           // of |sample| in the system that is looked at
+    double largest, least, total;    // of |sample| in the system that is looked at
     double *channels;                // of each replicate
 };
 

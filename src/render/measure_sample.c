@@ -101,6 +101,7 @@ bool measure_run(const struct measuring *m, uint32_t replicate, uint64_t begin, 
             sums->hits += is_hit;
             sums->total += looked_at;
             sums->largest = fmax(sums->largest, looked_at);
+            sums->least = fmin(sums->least, looked_at);
         } else
             ++sums->dropped;
         ++sums->samples;
