@@ -3,7 +3,12 @@
 #ifndef SR_API_PRIVATE_H
 #define SR_API_PRIVATE_H
 
+#include "import/import.h"
 #include "render/render.h"
+
+struct sr_world {
+    struct sr_import_result import;
+};
 
 struct sr_picture {
     struct sr_image *image; // of floats
@@ -13,5 +18,10 @@ struct sr_picture {
 sr_status api_tell(const struct sr_error *error, char *text, size_t size);
 /* Takes the image. */
 sr_status api_wrap_image(struct sr_image *image, struct sr_picture **picture, struct sr_error *error);
+
+/* A render as the scene says. */
+struct sr_render_job api_job(const struct sr_world *world);
+/* 100 <= min < max <= 20000 */
+sr_status api_check_lambda(const struct sr_render_job *job, struct sr_error *error);
 
 #endif

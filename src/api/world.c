@@ -3,12 +3,7 @@
 #include <steradian/world.h>
 
 #include "api/private.h"
-#include "import/import.h"
 #include "quantity/quantity.h"
-
-struct sr_world {
-    struct sr_import_result import;
-};
 
 struct listener {
     void (*warn)(void *user, const char *text);
@@ -48,13 +43,20 @@ void sr_world_destroy(struct sr_world *world)
     sr_free(world);
 }
 
-static struct sr_render_job job_of(const struct sr_world *world)
+struct sr_render_job api_job(const struct sr_world *world)
 {
     const struct sr_import_result *i = &world->import;
     return (struct sr_render_job){
         .scene = i->scene, .sensor = i->sensor, .filter = i->filter, .integrator = i->integrator, .film = i->film, .sampler = i->sampler,
         .seed = i->seed, .spp = i->spp, .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX}, .jitter_pixel = i->jitter_pixel, .jitter_lambda = i->jitter_lambda,
     };
+}
+
+sr_status api_check_lambda(const struct sr_render_job *job, struct sr_error *error)
+{
+    if (job->lambda.lo >= 100 && job->lambda.lo < job->lambda.hi && job->lambda.hi <= 20000)
+        return SR_OK;
+    return sr_fail(error, SR_ERROR_USAGE, "wavelengths from %g to %g nm: 100 <= min < max <= 20000 was expected", (double)job->lambda.lo, (double)job->lambda.hi);
 }
 
 struct caller {
@@ -75,7 +77,7 @@ sr_status sr_world_render(const struct sr_world *world, const struct sr_render_s
     struct sr_render_settings none = {0};
     struct caller caller = {.settings = settings ? settings : &none};
     const struct sr_render_settings *s = caller.settings;
-    struct sr_render_job job = job_of(world);
+    struct sr_render_job job = api_job(world);
     *picture = NULL;
     job.spp = s->spp ? s->spp : job.spp;
     job.replicates = s->replicates;
@@ -84,10 +86,8 @@ sr_status sr_world_render(const struct sr_world *world, const struct sr_render_s
     job.lambda.lo = s->lambda_min_nm > 0 ? s->lambda_min_nm : job.lambda.lo;
     job.lambda.hi = s->lambda_max_nm > 0 ? s->lambda_max_nm : job.lambda.hi;
     job.with_aov = s->with_auxiliary;
-    if (!(job.lambda.lo >= 100 && job.lambda.lo < job.lambda.hi && job.lambda.hi <= 20000)) {
-        sr_fail(&e, SR_ERROR_USAGE, "wavelengths from %g to %g nm: 100 <= min < max <= 20000 was expected", (double)job.lambda.lo, (double)job.lambda.hi);
+    if (api_check_lambda(&job, &e) != SR_OK)
         return api_tell(&e, error, error_size);
-    }
     if (s->progress) {
         job.progress = ask_caller;
         job.progress_interval_s = 0.1;
@@ -113,7 +113,7 @@ sr_status sr_world_irradiance(const struct sr_world *world, const double point_m
     sr_vec3 p = {(float)point_m[0], (float)point_m[1], (float)point_m[2]}, n = {(float)normal[0], (float)normal[1], (float)normal[2]};
     if (samples < 1 || replicates < 2 || !sr_is_finite(p) || !sr_is_finite(n) || !(sr_length(n) > 0))
         return SR_ERROR_USAGE;
-    struct sr_render_job job = job_of(world);
+    struct sr_render_job job = api_job(world);
     struct sr_irradiance E = sr_render_irradiance(&job, p, n, samples, replicates);
     if (isnan(E.E_v))
         return SR_ERROR_RESOURCE;

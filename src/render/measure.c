@@ -240,7 +240,12 @@ sr_status sr_measure(const struct sr_render_job *job, const struct sr_meter *met
     struct sr_measure_settings s = *settings;
     s.replicates = s.replicates ? s.replicates : DEFAULT_REPLICATES;
     struct measuring m = {.job = job, .meter = meter, .settings = &s, .replicates = s.replicates, .channels = MEASURE_BINS + s.spectrometer.count,
-                          .stream = UINT32_MAX - s.stream, .cell = UINT32_MAX};
+                          .stream = UINT32_MAX - s.stream, .cell = UINT32_MAX, .lambda = job->lambda};
+    if (s.spectrometer.count) {
+        const struct sr_spectrometer *sp = &s.spectrometer;
+        m.lambda.lo = fminf(m.lambda.lo, (float)fmax(1, sp->first - sp->fwhm));
+        m.lambda.hi = fmaxf(m.lambda.hi, (float)(sp->first + sp->step * (sp->count - 1) + sp->fwhm));
+    }
     *out = (struct sr_measurement){0};
     sr_status status = check(&s, error);
     if (status != SR_OK)

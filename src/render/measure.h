@@ -21,6 +21,7 @@ struct measuring {
     uint32_t replicates, channels;
     uint32_t stream, round; // which random numbers
     uint32_t cell;          // of a map; UINT32_MAX: no map
+    struct sr_lambda_range lambda; // [nm] the job's, and what the spectrometer's outer bins reach beyond it
 };
 
 /* One sample: adds to channels; what it was in the system that is looked at. false: not finite, and not added. */

@@ -54,7 +54,8 @@ sr_status sr_measure_map(const struct sr_render_job *job, const struct sr_meter 
     sr_image_set_unit(made, 0, unit);
     sr_image_set_unit(made, 1, unit);
     struct mapping map = {
-        .m = {.job = job, .meter = meter, .settings = &s, .replicates = s.replicates, .channels = MEASURE_BINS, .stream = s.stream << 26},
+        .m = {.job = job, .meter = meter, .settings = &s, .replicates = s.replicates, .channels = MEASURE_BINS, .stream = s.stream << 26,
+              .lambda = job->lambda},
         .n = (s.samples + s.replicates - 1) / s.replicates, .image = made,
     };
     for (uint64_t i = 0; i < 2 * (uint64_t)width * height; ++i)

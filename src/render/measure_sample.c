@@ -35,7 +35,7 @@ static sr_spectrum estimate(const struct measuring *m, const struct sr_sampler *
     const struct sr_integrator *integrator = &m->job->integrator;
     sr_u4 u, u_light, u_place = sr_sample4(sampler, USE_PLACE);
     sr_sample8(sampler, SR_USE_FILM, &u, &u_light);
-    *w = sr_wavelengths_sample(m->job->lambda, m->job->jitter_lambda ? u_place[2] : 0.5f);
+    *w = sr_wavelengths_sample(m->lambda, m->job->jitter_lambda ? u_place[2] : 0.5f);
     sr_wavelengths_know(w, sr_scene_lights(m->job->scene)->white);
     struct sr_meter_place at;
     sr_vec2 where = {u_place[0], u_place[1]};
@@ -71,18 +71,23 @@ bool measure_sample(const struct measuring *m, uint32_t replicate, uint32_t samp
     *looked_at = 0;
     if (!*is_hit)
         return true;
+    if (!sr_spectrum_is_finite(X))
+        return false;
+    const struct sr_spectrometer *spectrometer = &m->settings->spectrometer;
+    if (spectrometer->count) { // its bins may reach beyond the wavelengths that all else is summed over
+        sr_spectrometer_add(spectrometer, X, &w, channels + MEASURE_BINS);
+        X = sr_spectrum_select((w.lambda >= job->lambda.lo) & (w.lambda <= job->lambda.hi), X, SR_BLACK);
+    }
     double readings[SR_SYSTEM_COUNT];
     sr_observe(X, &w, readings);
     struct sr_xyz xyz = sr_spectrum_to_xyz(X, &w);
     *looked_at = fabs(readings[m->settings->system]);
-    if (!sr_spectrum_is_finite(X) || !isfinite(*looked_at))
+    if (!isfinite(*looked_at))
         return false;
     for (int i = 0; i < SR_SYSTEM_COUNT; ++i)
         channels[i] += readings[i];
     channels[MEASURE_X] += (double)xyz.x;
     channels[MEASURE_Z] += (double)xyz.z;
-    if (m->settings->spectrometer.count)
-        sr_spectrometer_add(&m->settings->spectrometer, X, &w, channels + MEASURE_BINS);
     return true;
 }
 

@@ -285,6 +285,44 @@ TEST(irradiance_under_a_uniform_sky_is_pi_L)
     sr_world_destroy(world);
 }
 
+TEST(meters_of_a_scene_are_listed_and_read)
+{
+    struct sr_world *world = load(write_scene("meters.pbrt", "WorldBegin\nLightSource \"infinite\" \"spectrum L\" [200 1 1000 1] \"float scale\" 2\n"
+                                              "#@ Meter \"spherical\" \"string name\" \"ball\"\n#@ Meter \"irradiancemap\" \"vector3 u\" [1 0 0] "
+                                              "\"vector3 v\" [0 1 0] \"integer nx\" 3 \"integer ny\" 2\n"));
+    struct sr_world_meter meter;
+    struct sr_world_reading reading;
+    char error[256] = "";
+    EXPECT_EQUAL_INT(sr_world_meter_count(world), 2);
+    EXPECT(sr_world_meter(world, 0, &meter) && meter.width == 0);
+    EXPECT_EQUAL_TEXT(meter.name, "ball");
+    EXPECT_EQUAL_TEXT(meter.kind, "spherical");
+    EXPECT(sr_world_meter(world, 1, &meter) && meter.width == 3 && meter.height == 2);
+    EXPECT(!sr_world_meter(world, 2, &meter));
+    EXPECT_EQUAL_INT(sr_world_measure(world, 0, NULL, &reading, error, sizeof error), SR_OK);
+    EXPECT_RELATIVE(reading.value[SR_PHOTOPIC].value, 2 * 3.14159265358979, 1e-5);
+    EXPECT(reading.samples == 65536 && reading.samples_with_light == 65536 && reading.is_on_target && reading.remarks[0] == 0);
+    struct sr_quantity bins[3];
+    struct sr_measure_options options = {.error = 0.001, .system = SR_PHOTOPIC, .spectrum_first_nm = 450, .spectrum_step_nm = 100, .spectrum_count = 3, .spectrum = bins};
+    EXPECT_EQUAL_INT(sr_world_measure(world, 0, &options, &reading, error, sizeof error), SR_OK);
+    EXPECT(reading.is_on_target);
+    // 2 cd/m^2 of a flat spectrum: 2 / (683 * 106.857) W m^-2 sr^-1 nm^-1
+    for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(bins[i].value, 3.14159265358979 * 2 / (683 * 106.856895), 5 * bins[i].u);
+    struct sr_picture *map;
+    options.spectrum_count = 0;
+    EXPECT_EQUAL_INT(sr_world_measure_map(world, 1, &options, &map, error, sizeof error), SR_OK);
+    sr_picture_destroy(map);
+    EXPECT_EQUAL_INT(sr_world_measure_map(world, 0, NULL, &map, error, sizeof error), SR_ERROR_USAGE);
+    EXPECT(strstr(error, "makes no map") && map == NULL);
+    EXPECT_EQUAL_INT(sr_world_measure(world, 2, NULL, &reading, error, sizeof error), SR_ERROR_USAGE);
+    EXPECT(strstr(error, "there is no meter 2"));
+    options.spectrum_count = 3;
+    options.spectrum = NULL;
+    EXPECT_EQUAL_INT(sr_world_measure(world, 0, &options, &reading, error, sizeof error), SR_ERROR_USAGE);
+    sr_world_destroy(world);
+}
+
 TEST(expanded_uncertainty_uses_students_quantiles)
 {
     const struct sr_quantity reading = {.value = 1, .u = 2, .degrees = 10};

@@ -364,21 +364,15 @@ static int measure_scene(const struct measure_arguments *a, const struct sr_impo
         s.with_colour = measure_wants_colour(a, meter);
         if (measure_spectrometer(a, meter, &s.spectrometer, &error) != SR_OK)
             break;
-        struct sr_render_job its = job;
-        const struct sr_spectrometer *sp = &s.spectrometer;
-        if (sp->count) { // no bin without light of its wavelengths
-            its.lambda.lo = fminf(its.lambda.lo, (float)(sp->first - sp->fwhm));
-            its.lambda.hi = fmaxf(its.lambda.hi, (float)(sp->first + sp->step * (sp->count - 1) + sp->fwhm));
-        }
-        sr_status status = sr_measure(&its, meter, &s, &arena, &m, &error);
+        sr_status status = sr_measure(&job, meter, &s, &arena, &m, &error);
         if (status != SR_OK && status != SR_CANCELLED)
             break;
         is_complete = m.is_complete;
         is_on_target = is_on_target && m.is_on_target;
         if (a->json)
-            json_array_append_new(list, measure_json(a, meter, sp, &m));
+            json_array_append_new(list, measure_json(a, meter, &s.spectrometer, &m));
         else
-            measure_print(a, meter, sp, &m, width);
+            measure_print(a, meter, &s.spectrometer, &m, width);
         for (uint32_t k = 0; k < m.remark_count; ++k)
             fprintf(stderr, "warning: meter \"%s\": %s\n", sr_meter_common(meter)->name, m.remarks[k]);
         if (a->outfile && meter->model->raster && is_complete)
