@@ -2,6 +2,7 @@
 /* steradian image: pictures from one format into another, cut, toned, or told as numbers. */
 #include "command.h"
 #include "image_false.h"
+#include "image_region.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -9,6 +10,7 @@
 
 static const char help[] =
     "Usage: steradian image IN [-o OUT] [OPTIONS]\n"
+    "       steradian image IN [IN…] --region X0,Y0,X1,Y1 --statistics\n"
     "\n"
     "Reads EXR, PNG, JPEG, PFM, HDR or TGA and writes .exr, .png, .pfm or .hdr, by the ending of OUT. Numbers keep\n"
     "their units, except in a PNG, which is for looking at. Without -o the statistics are printed.\n"
@@ -26,6 +28,9 @@ static const char help[] =
     "      --contours         of --false-colour: lines at the numbers of the legend\n"
     "      --title TEXT       of --false-colour: above the figure\n"
     "      --stats            mean, deviation, percentiles and odd values of each channel\n"
+    "      --statistics       luminance and colour of the region as a measurement: mean with its uncertainty, least, most.\n"
+    "                         Several pictures are replicates: independent renders with other seeds\n"
+    "      --region X0,Y0,X1,Y1   from pixel X0,Y0 to before X1,Y1 (default: the whole picture)\n"
     "      --json             the statistics as JSON on standard output\n"
     "  -q, --quiet            no notes; warnings and errors stay\n"
     "\n"
@@ -34,17 +39,21 @@ static const char help[] =
     "  steradian image cornell.exr -o albedo.png --channel albedo --exposure 0\n"
     "  steradian image cornell.exr --crop 100,100,64,64 --channel R,G,B --stats\n"
     "  steradian image sky.hdr -o sky.exr\n"
+    "  steradian image seed1.exr seed2.exr seed3.exr --region 20,20,40,40 --statistics\n"
     "  steradian image room.exr --false-colour --scale 1,1000 --log --contours -o luminance.png\n";
 
 struct arguments {
     const char *input, *output, *channels;
-    bool has_exposure, has_tone, has_crop, stats, json, quiet, is_false;
+    const char *const *inputs;
+    int input_count;
+    bool has_exposure, has_tone, has_crop, has_region, measures, stats, json, quiet, is_false;
+    double region[4]; // [pixel]
     struct false_colour false_colour;
     double exposure_EV, crop[4];
     enum sr_tone_operator tone;
 };
 
-enum { OPT_EXPOSURE = 256, OPT_TONE, OPT_CROP, OPT_CHANNEL, OPT_STATS, OPT_JSON, OPT_FALSE, OPT_SCALE, OPT_LOG, OPT_CONTOURS, OPT_TITLE };
+enum { OPT_EXPOSURE = 256, OPT_TONE, OPT_CROP, OPT_CHANNEL, OPT_STATS, OPT_JSON, OPT_REGION, OPT_STATISTICS, OPT_FALSE, OPT_SCALE, OPT_LOG, OPT_CONTOURS, OPT_TITLE };
 
 static const struct option long_options[] = {
     {"outfile", required_argument, NULL, 'o'},
@@ -59,6 +68,8 @@ static const struct option long_options[] = {
     {"contours", no_argument, NULL, OPT_CONTOURS},
     {"title", required_argument, NULL, OPT_TITLE},
     {"stats", no_argument, NULL, OPT_STATS},
+    {"statistics", no_argument, NULL, OPT_STATISTICS},
+    {"region", required_argument, NULL, OPT_REGION},
     {"json", no_argument, NULL, OPT_JSON},
     {"quiet", no_argument, NULL, 'q'},
     {NULL, 0, NULL, 0},
@@ -86,6 +97,19 @@ static bool parse_crop(const char *text, double crop[4])
             return false;
         }
     return true;
+}
+
+static bool parse_region(const char *text, double r[4])
+{
+    if (!command_parse_floats(&command_image, "region", text, 4, r))
+        return false;
+    bool is_whole = true;
+    for (int i = 0; i < 4; ++i)
+        is_whole &= r[i] >= 0 && r[i] <= 1 << 30 && r[i] == floor(r[i]);
+    if (is_whole && r[0] < r[2] && r[1] < r[3])
+        return true;
+    command_usage(&command_image, "--region %s: X0,Y0,X1,Y1 in whole pixels with X0 < X1 and Y0 < Y1 was expected", text);
+    return false;
 }
 
 static int parse(int argc, char **argv, struct arguments *a)
@@ -134,6 +158,13 @@ static int parse(int argc, char **argv, struct arguments *a)
         case OPT_TITLE:
             f->title = optarg;
             break;
+        case OPT_REGION:
+            a->has_region = true;
+            ok = parse_region(optarg, a->region);
+            break;
+        case OPT_STATISTICS:
+            a->measures = true;
+            break;
         case OPT_STATS:
             a->stats = true;
             break;
@@ -145,6 +176,14 @@ static int parse(int argc, char **argv, struct arguments *a)
         }
     if (!ok)
         return SR_ERROR_USAGE;
+    a->inputs = (const char *const *)argv + optind;
+    a->input_count = argc - optind;
+    if (a->has_region && !a->measures)
+        return command_usage(c, "--region is for --statistics, which was not asked for");
+    if (a->measures && (a->output || a->has_crop || a->channels || a->stats || a->is_false))
+        return command_usage(c, "--statistics goes with --region and --json only");
+    if (a->measures && optind < argc)
+        return 0;
     if (optind + 1 != argc)
         return command_usage(c, optind == argc ? "a picture was expected" : "one picture was expected, there are %d",
                              argc - optind);
@@ -299,12 +338,28 @@ static sr_status prepare(const struct arguments *a, struct sr_image **image, str
     return error->status;
 }
 
+static int measure_region(const struct arguments *a)
+{
+    struct image_region region = {(uint32_t)a->region[0], (uint32_t)a->region[1], (uint32_t)a->region[2], (uint32_t)a->region[3]};
+    if (!a->has_region) {
+        struct sr_error error = {0};
+        struct sr_image *image;
+        if (sr_image_read(a->inputs[0], &image, &error) != SR_OK)
+            return command_fail("image", &error);
+        region = (struct image_region){0, 0, image->width, image->height};
+        sr_image_free(image);
+    }
+    return image_print_region(a->inputs, a->input_count, &region, a->json);
+}
+
 static int run(int argc, char **argv)
 {
     struct arguments a;
     int code = parse(argc, argv, &a);
     if (code)
         return code;
+    if (a.measures)
+        return measure_region(&a);
     struct sr_error error = {0};
     struct sr_image *image = NULL;
     if (sr_image_read(a.input, &image, &error) == SR_OK && prepare(&a, &image, &error) == SR_OK && a.output)
