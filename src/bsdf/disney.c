@@ -75,14 +75,11 @@ static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_trans
     const struct disney *m = self;
     (void)mode;
     *p = 0;
-    if (!(wo.z * wi.z > 0))
+    sr_vec3 h;
+    float ci = fabsf(wi.z), co = fabsf(wo.z), cd;
+    if (!(wo.z * wi.z > 0) || !mirror_facet(wo, wi, &h, &cd))
         return SR_BLACK;
-    sr_vec3 h = sr_add(wo, wi);
-    float length = sr_length(h);
-    if (!(length > 1e-10f))
-        return SR_BLACK;
-    h = sr_scale((h.z < 0 ? -1 : 1) / length, h);
-    float ci = fabsf(wi.z), co = fabsf(wo.z), cd = fabsf(sr_dot(wo, h));
+    h.z = fabsf(h.z); // on either side the same
     float FL = schlick_weight(ci), FV = schlick_weight(co), FH = schlick_weight(cd);
     float F90 = 0.5f + 2 * cd * cd * m->roughness, flat90 = cd * cd * m->roughness;
     float Fd = (1 + (F90 - 1) * FL) * (1 + (F90 - 1) * FV), Fss = (1 + (flat90 - 1) * FL) * (1 + (flat90 - 1) * FV);

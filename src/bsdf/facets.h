@@ -171,15 +171,8 @@ static inline float facets_reflection(const struct facets *a, sr_vec3 wo, sr_vec
 {
     *pdf = 0;
     *cos_m = 0;
-    if (!(wo.z * wi.z > 0))
-        return 0;
-    sr_vec3 m = sr_add(wo, wi);
-    float length2 = sr_length2(m);
-    if (!(length2 > 1e-20f))
-        return 0;
-    m = sr_scale(1 / sqrtf(length2), m);
-    *cos_m = sr_dot(wo, m);
-    if (!(*cos_m > 0))
+    sr_vec3 m;
+    if (!(wo.z * wi.z > 0) || !mirror_facet(wo, wi, &m, cos_m))
         return 0;
     float area_o = facets_area(a, wo), D = facets_D(a, m);
     *pdf = 0.25f * facets_pdf(a, wo, m, *cos_m, D, area_o);

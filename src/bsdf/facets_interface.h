@@ -49,9 +49,9 @@ static inline float stirling_rest(float x)
 /* Euler's B(x, y) for x, y >= 1, by B(x + 2, y + 2) and Stirling's series; no cancellation for large x or y. */
 static inline float euler_beta(float x, float y)
 {
-    float s = x + y, X = x + 2, Y = y + 2, S = s + 4;
+    float s = x + y, X = x + 2, Y = y + 2, S = s + 4, small = sr_min(X, Y), large = larger(X, Y);
     float up = s / x * ((s + 1) / (x + 1)) * ((s + 2) / y) * ((s + 3) / (y + 1));
-    float power = (X - 0.5f) * log1pf(-Y / S) + (Y - 0.5f) * log1pf(-X / S);
+    float power = (large - 0.5f) * log1pf(-small / S) + (small - 0.5f) * logf(small / S);
     return up * 2.50662827f / sqrtf(S) * expf(power + stirling_rest(X) + stirling_rest(Y) - stirling_rest(S));
 }
 
@@ -71,27 +71,16 @@ static inline float passing_mask(const struct rough_interface *a, float zo, floa
 static inline float rough_interface_f_pdf(const struct rough_interface *a, sr_vec3 wo, sr_vec3 wi, float *pdf)
 {
     *pdf = 0;
-    if (a->is_smooth || wo.z == 0 || wi.z == 0)
+    struct turn t;
+    if (a->is_smooth || !turn_at(wo, wi, a->eta, &t))
         return 0;
-    bool transmits = wo.z * wi.z < 0;
-    float eta = wo.z < 0 ? 1 / a->eta : a->eta;
-    sr_vec3 m = sr_mad(wo, transmits ? eta : 1, wi);
-    float length2 = sr_length2(m);
-    if (!(length2 > 1e-20f))
-        return 0;
-    m = sr_scale((m.z * wo.z < 0 ? -1.0f : 1.0f) / sqrtf(length2), m); // on the side of wo
-    float cos_o = sr_dot(wo, m), cos_i = sr_dot(wi, m), cos_t;
-    if (!(cos_o > 0) || (transmits ? !(cos_i < 0) : !(cos_i > 0))) // facets seen from behind
-        return 0;
-    float R = fresnel_and_cos(cos_o, eta, &cos_t), share = transmits ? 1 - R : R;
+    float R = turn_fresnel(&t), share = t.transmits ? 1 - R : R;
     if (!(share > 0))
         return 0;
-    float zo = fabsf(wo.z), zi = fabsf(wi.z), D = facets_D(&a->facets, m);
     float area_o = facets_area(&a->facets, wo), area_i = facets_area(&a->facets, wi);
-    float G = transmits ? passing_mask(a, zo, zi, area_o, area_i)
-                        : facets_masking(&a->facets, wo, wi, m, cos_o, area_o, area_i);
-    float jacobian = transmits ? -cos_i / sr_sqr(cos_i + cos_o / eta) : 1 / (4 * cos_o); // |dm / dwi|
-    float seen = share * D * cos_o * jacobian;
+    float G = t.transmits ? passing_mask(a, fabsf(wo.z), fabsf(wi.z), area_o, area_i)
+                          : facets_masking(&a->facets, wo, wi, t.m, t.cos_o, area_o, area_i);
+    float seen = share * facets_D(&a->facets, t.m) * t.cos_o * t.jacobian;
     *pdf = seen / area_o;
     if (!(*pdf > 0 && *pdf < INFINITY))
         return *pdf = 0;

@@ -221,29 +221,19 @@ static inline sr_spectrum film_glass_f_pdf(const struct film_stack *f, float eta
                                            float *pdf)
 {
     *pdf = 0;
-    if (film_glass_is_smooth(eta_below, ggx) || wo.z == 0 || wi.z == 0)
+    struct turn t;
+    if (film_glass_is_smooth(eta_below, ggx) || !turn_at(wo, wi, eta_below, &t))
         return SR_BLACK;
     ggx = ggx_usable(ggx);
-    bool transmits = wo.z * wi.z < 0;
-    float eta = wo.z < 0 ? 1 / eta_below : eta_below;
-    sr_vec3 m = sr_mad(wo, transmits ? eta : 1, wi);
-    float length2 = sr_length2(m);
-    if (!(length2 > 1e-20f))
-        return SR_BLACK;
-    m = sr_scale((m.z * wo.z < 0 ? -1.0f : 1.0f) / sqrtf(length2), m); // on the side of wo
-    float cos_o = sr_dot(wo, m), cos_i = sr_dot(wi, m);
-    if (!(cos_o > 0) || (transmits ? !(cos_i < 0) : !(cos_i > 0))) // microfacets seen from behind
-        return SR_BLACK;
-    float cos_t = -cos_i;
-    if (!transmits)
-        fresnel_and_cos(cos_o, eta, &cos_t);
-    struct film_shares share = film_shares(f, lambda, cos_o, cos_t, wo.z < 0);
+    float cos_t = -t.cos_i;
+    if (!t.transmits)
+        fresnel_and_cos(t.cos_o, t.eta, &cos_t);
+    struct film_shares share = film_shares(f, lambda, t.cos_o, cos_t, wo.z < 0);
     float zo = fabsf(wo.z), zi = fabsf(wi.z);
-    float so = ggx_stretched(ggx, wo), si = ggx_stretched(ggx, wi), D = ggx_D(ggx, m);
-    float jacobian = transmits ? -cos_i / sr_sqr(cos_i + cos_o / eta) : 1 / (4 * cos_o); // |dm / dwi|
-    *pdf = (transmits ? share.transmission : share.reflection) * 2 * D * cos_o / (zo + so) * jacobian;
-    sr_spectrum value = (transmits ? share.T : share.R) * (D * 2 / (so * zi + si * zo) * cos_o * jacobian);
-    return mode == SR_RADIANCE && transmits ? value / (eta * eta) : value;
+    float so = ggx_stretched(ggx, wo), si = ggx_stretched(ggx, wi), seen = 2 * ggx_D(ggx, t.m) * t.cos_o * t.jacobian;
+    *pdf = (t.transmits ? share.transmission : share.reflection) * seen / (zo + so);
+    sr_spectrum value = (t.transmits ? share.T : share.R) * (seen / (so * zi + si * zo));
+    return mode == SR_RADIANCE && t.transmits ? value / (t.eta * t.eta) : value;
 }
 
 static inline bool film_glass_sample(const struct film_stack *f, float eta_below, struct sr_ggx ggx,

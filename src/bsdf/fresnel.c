@@ -38,10 +38,10 @@ bool sr_refract(sr_vec3 wi, sr_vec3 n, float eta, float *eta_path, sr_vec3 *wt)
         cos_i = -cos_i;
         n = sr_neg(n);
     }
-    float sin2_t = larger(0, (1 - cos_i) * (1 + cos_i)) / (eta * eta);
-    if (sin2_t >= 1)
+    float g2 = (eta - 1) * (eta + 1) + sr_sqr(sr_min(cos_i, 1)); // (eta cos_t)^2
+    if (!(g2 > 0))
         return false;
-    float cos_t = sqrtf(1 - sin2_t);
+    float cos_t = sqrtf(g2) / eta;
     *wt = sr_mad(sr_scale(-1 / eta, wi), cos_i / eta - cos_t, n);
     *eta_path = eta;
     return true;

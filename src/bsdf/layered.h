@@ -214,9 +214,13 @@ static inline sr_spectrum layered_f(const struct layers *l, bool metal, sr_vec3 
 
     for (int n = 0; n < count; ++n) {
         struct interface_sample enter, leave, s;
-        if (!draw_top(l, wo, SR_LOBE_TRANSMISSION, &rng, &enter) ||
-            !draw_top(l, wi, SR_LOBE_TRANSMISSION, &rng, &leave))
+        if (!draw_top(l, wo, SR_LOBE_TRANSMISSION, &rng, &enter))
             continue;
+        if (!draw_top(l, wi, SR_LOBE_TRANSMISSION, &rng, &leave)) {
+            if (!rough_top || c->weighs_as_pbrt)
+                continue;
+            leave = (struct interface_sample){.wi = {0, 0, -1}, .pdf = 1}; // of no weight: the other way still leads out
+        }
         sr_vec3 up = sr_neg(leave.wi);
         float leave_f = leave.weight / up.z; // f / pdf of the way out
         sr_spectrum beta = SR_ONE * (enter.weight / (l->top.eta * l->top.eta));

@@ -34,19 +34,25 @@ static inline void sin_cos_turn(float u, float *s, float *c)
     *c = ((quarter + 1) & 2) ? -b : b;
 }
 
-/* Fresnel's reflectance and the cosine of the refracted direction; cos_i in 0 ... 1, eta = transmitted / incident side. */
+/* Fresnel's reflectance of the cosines on both sides; g = eta cos_t. */
+static inline float fresnel_of(float cos_i, float g, float eta)
+{
+    float dense = eta * eta * cos_i, r_p = (dense - g) / (dense + g), r_s = (cos_i - g) / (cos_i + g);
+    return (r_p * r_p + r_s * r_s) * 0.5f;
+}
+
+/* Fresnel's reflectance and the cosine of the refracted direction; cos_i in 0 ... 1, eta = transmitted / incident side.
+ * With g = eta cos_t = sqrt((eta - 1) (eta + 1) + cos_i^2), which keeps its digits where 1 - sin_t^2 cancels. */
 static inline float fresnel_and_cos(float cos_i, float eta, float *cos_t)
 {
     cos_i = sr_min(cos_i, 1);
-    float sin2_t = (1 - cos_i) * (1 + cos_i) / (eta * eta);
+    float g2 = (eta - 1) * (eta + 1) + cos_i * cos_i;
     *cos_t = 0;
-    if (sin2_t >= 1)
+    if (!(g2 > 0))
         return 1;
-    float ct = sqrtf(1 - sin2_t);
-    float r_p = (eta * cos_i - ct) / (eta * cos_i + ct);
-    float r_s = (cos_i - eta * ct) / (cos_i + eta * ct);
-    *cos_t = ct;
-    return (r_p * r_p + r_s * r_s) * 0.5f;
+    float g = sqrtf(g2);
+    *cos_t = g / eta;
+    return fresnel_of(cos_i, g, eta);
 }
 
 /* cos_i signed: negative means from behind, where the relative index is 1 / eta. */
@@ -86,6 +92,56 @@ static inline sr_vec3 ggx_sample_visible(struct sr_ggx g, sr_vec3 w, sr_vec2 u)
     float r = sr_safe_sqrt((1 - z) * (1 + z));
     sr_vec3 m = {g.alpha_x * (r * cosine + v.x), g.alpha_y * (r * sine + v.y), larger(z + v.z, 1e-9f)};
     return sr_normalize(m);
+}
+
+/* The microfacet that mirrors wo to wi, on the side of wo. The cosine there is |wo + wi| / 2 of two unit vectors: wo.m is off
+ * by the rounding of their lengths, which at grazing is more than the cosine itself, and may even be below 0. */
+static inline bool mirror_facet(sr_vec3 wo, sr_vec3 wi, sr_vec3 *m, float *cos_m)
+{
+    *m = sr_add(wo, wi);
+    float length2 = sr_length2(*m);
+    *cos_m = 0;
+    if (!(length2 > 1e-20f))
+        return false;
+    float length = sqrtf(length2);
+    *m = sr_scale(1 / length, *m);
+    *cos_m = sr_min(0.5f * length, 1);
+    return true;
+}
+
+/* Where a facet turns light from wo to wi at a boundary; eta = index on wi's side over that on wo's. */
+struct turn {
+    sr_vec3 m; // on the side of wo
+    float eta, cos_o, cos_i;
+    float jacobian; // [1] |dm / dwi|
+    bool transmits;
+};
+static inline bool turn_at(sr_vec3 wo, sr_vec3 wi, float eta_below, struct turn *t)
+{
+    t->transmits = wo.z * wi.z < 0;
+    t->eta = wo.z < 0 ? 1 / eta_below : eta_below;
+    if (!t->transmits) {
+        bool turns = wo.z * wi.z > 0 && mirror_facet(wo, wi, &t->m, &t->cos_o);
+        t->cos_i = t->cos_o;
+        t->jacobian = 1 / (4 * t->cos_o);
+        return turns;
+    }
+    t->m = sr_mad(wo, t->eta, wi);
+    float length2 = sr_length2(t->m);
+    if (!(length2 > 1e-20f))
+        return false;
+    t->m = sr_scale((t->m.z * wo.z < 0 ? -1.0f : 1.0f) / sqrtf(length2), t->m);
+    t->cos_o = sr_dot(wo, t->m);
+    t->cos_i = sr_dot(wi, t->m);
+    t->jacobian = -t->cos_i / sr_sqr(t->cos_i + t->cos_o / t->eta);
+    return t->cos_o > 0 && t->cos_i < 0; // else the facet is seen from behind
+}
+
+/* Where light is refracted, wi tells the cosine better than Snell's law does near total reflection. */
+static inline float turn_fresnel(const struct turn *t)
+{
+    float unused;
+    return t->transmits ? fresnel_of(t->cos_o, -t->cos_i * t->eta, t->eta) : fresnel_and_cos(t->cos_o, t->eta, &unused);
 }
 
 /* A dielectric boundary between two half spaces: grey, because one path bears one index. */
@@ -163,31 +219,19 @@ static inline bool interface_sample(const struct interface *a, sr_vec3 wo, float
 static inline float interface_f_pdf(const struct interface *a, sr_vec3 wo, sr_vec3 wi, uint32_t lobes, float *pdf)
 {
     *pdf = 0;
-    if (a->is_smooth || wo.z == 0 || wi.z == 0)
+    struct turn t;
+    if (a->is_smooth || !turn_at(wo, wi, a->eta, &t) || !(lobes & (t.transmits ? SR_LOBE_TRANSMISSION : SR_LOBE_REFLECTION)))
         return 0;
-    bool transmits = wo.z * wi.z < 0;
-    if (!(lobes & (transmits ? SR_LOBE_TRANSMISSION : SR_LOBE_REFLECTION)))
-        return 0;
-    float eta = wo.z < 0 ? 1 / a->eta : a->eta;
-    sr_vec3 m = sr_mad(wo, transmits ? eta : 1, wi);
-    float length2 = sr_length2(m);
-    if (!(length2 > 1e-20f))
-        return 0;
-    m = sr_scale((m.z * wo.z < 0 ? -1.0f : 1.0f) / sqrtf(length2), m); // on the side of wo
-    float cos_o = sr_dot(wo, m), cos_i = sr_dot(wi, m), cos_t;
-    if (!(cos_o > 0) || (transmits ? !(cos_i < 0) : !(cos_i > 0))) // microfacets seen from behind
-        return 0;
-    float R = fresnel_and_cos(cos_o, eta, &cos_t);
+    float R = turn_fresnel(&t);
     float share_r = lobes & SR_LOBE_REFLECTION ? R : 0, share_t = lobes & SR_LOBE_TRANSMISSION ? 1 - R : 0;
-    float share = transmits ? share_t : share_r;
+    float share = t.transmits ? share_t : share_r;
     if (!(share > 0))
         return 0;
     float zo = fabsf(wo.z), zi = fabsf(wi.z);
     float so = ggx_stretched(a->ggx, wo), si = ggx_stretched(a->ggx, wi);
-    float D = ggx_D(a->ggx, m);
-    float jacobian = transmits ? -cos_i / sr_sqr(cos_i + cos_o / eta) : 1 / (4 * cos_o); // |dm / dwi|
-    *pdf = share / (share_r + share_t) * 2 * D * cos_o / (zo + so) * jacobian;
-    return share * D * 2 / (so * zi + si * zo) * cos_o * jacobian;
+    float seen = 2 * ggx_D(a->ggx, t.m) * t.cos_o * t.jacobian;
+    *pdf = share / (share_r + share_t) * seen / (zo + so);
+    return share * seen / (so * zi + si * zo);
 }
 
 /* A conductor's reflectance per wavelength; c = |cos theta|. The real form of Fresnel's formulas. */
@@ -217,15 +261,8 @@ static inline float ggx_reflection(struct sr_ggx g, sr_vec3 wo, sr_vec3 wi, floa
 {
     *pdf = 0;
     *cos_m = 0;
-    if (!(wo.z * wi.z > 0))
-        return 0;
-    sr_vec3 m = sr_add(wo, wi);
-    float length2 = sr_length2(m);
-    if (!(length2 > 1e-20f))
-        return 0;
-    m = sr_scale(1 / sqrtf(length2), m);
-    *cos_m = sr_dot(wo, m);
-    if (!(*cos_m > 0))
+    sr_vec3 m;
+    if (!(wo.z * wi.z > 0) || !mirror_facet(wo, wi, &m, cos_m))
         return 0;
     float zo = fabsf(wo.z), zi = fabsf(wi.z);
     float so = ggx_stretched(g, wo), si = ggx_stretched(g, wi);

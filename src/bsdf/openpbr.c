@@ -36,7 +36,7 @@ struct openpbr {
     sr_spectrum rho, again, edge, absorb;  // EON's colour, and what it scatters again; F82's subtrahend; ln C_c / 2
     struct sr_ggx ggx, coat;
     float metal, gloss, glass;             // [1] shares
-    float eta, eta_s;                      // [1] of the glass; of the gloss under the coat
+    float eta, eta_s;                      // [1] of the glass, 1: light goes straight on; of the gloss under the coat
     float gloss0, gloss_mean;              // [1] F at normal incidence, 1 / (1 - <E_s>)
     float coat0, coat_mean, coat_inside;   // [1] the same of the coat; k of rough matter
     float A;                               // EON's
@@ -177,6 +177,8 @@ static void ready(void *self, const struct sr_bsdf_at *at)
     float e = sqrtf(sr_min(m->specular_weight * normal_reflectance(m->specular_ior), 0.8f));
     float e_s = sqrtf(sr_min(m->specular_weight * normal_reflectance(under), 0.8f));
     m->eta = (1 + e) / (1 - e);
+    if (m->eta < 1 + 1e-3f) // turns light by less than slopes of floats tell
+        m->eta = 1;
     m->eta_s = (1 + e_s) / (1 - e_s);
     m->gloss0 = normal_reflectance(m->eta_s);
 
@@ -210,7 +212,7 @@ static uint32_t lobes(const void *self)
 {
     const struct openpbr *m = self;
     return SR_LOBE_REFLECTION | SR_LOBE_GLOSSY | (m->gloss > 0 ? SR_LOBE_DIFFUSE : 0) |
-           (m->glass > 0 ? SR_LOBE_TRANSMISSION : 0);
+           (m->glass > 0 ? SR_LOBE_TRANSMISSION : 0) | (m->glass > 0 && m->eta == 1 ? SR_LOBE_SPECULAR : 0);
 }
 
 /* ---- lobes ---- */
@@ -249,7 +251,7 @@ static struct facet facet_of(const struct openpbr *m, float c, bool below)
     struct facet f = {.metal = m->metal * metal_fresnel(m, c), .gloss = fresnel_and_cos(c, m->eta_s, &unused)};
     f.glass = fresnel_and_cos(c, below ? 1 / m->eta : m->eta, &unused);
     f.all = f.metal + (m->gloss * f.gloss + m->glass * f.glass);
-    float T = m->glass * (1 - f.glass);
+    float T = m->eta == 1 ? 0 : m->glass * (1 - f.glass);
     f.through = T > 0 ? T / (T + sr_spectrum_mean(f.all)) : 0;
     return f;
 }
@@ -271,48 +273,51 @@ static sr_spectrum darkening(const struct openpbr *m, float k, sr_spectrum E)
 }
 
 struct choice { // [1] probabilities
-    float fuzz, coat, diffuse, specular;
+    float fuzz, coat, diffuse, straight, specular;
 };
 static struct choice choices(const struct openpbr *m, float co, bool below)
 {
     float opaque = below ? m->metal + m->gloss : 1, unused;
     float F = fresnel_and_cos(co, m->eta_s, &unused);
     struct choice c = {.diffuse = m->gloss * sr_spectrum_mean(m->rho),
-                       .specular = m->metal * sr_spectrum_mean(m->rho) + m->gloss * F + m->glass + 1e-3f};
+                       .straight = m->eta == 1 ? m->glass : 0,
+                       .specular = m->metal * sr_spectrum_mean(m->rho) + m->gloss * F + 1e-3f};
+    if (m->eta != 1)
+        c.specular += m->glass;
     if (m->fuzz_weight > 0)
         c.fuzz = opaque * m->fuzz_weight * look_up(FUZZ, m->fuzz.alpha, co);
     if (m->coat_weight > 0)
         c.coat = opaque * m->coat_weight * gloss_albedo(m->coat_alpha, m->coat0, co);
-    float sum = 1 / (c.fuzz + c.coat + c.diffuse + c.specular);
-    return (struct choice){c.fuzz * sum, c.coat * sum, c.diffuse * sum, c.specular * sum};
+    float sum = 1 / (c.fuzz + c.coat + c.diffuse + c.straight + c.specular);
+    return (struct choice){c.fuzz * sum, c.coat * sum, c.diffuse * sum, c.straight * sum, c.specular * sum};
+}
+
+/* Transmittance of fuzz and coat for light that the glass lets through, at the cosine outside. */
+static sr_spectrum through_layers(const struct openpbr *m, float above)
+{
+    sr_spectrum T = m->transmission_color;
+    if (m->fuzz_weight > 0)
+        T *= 1 - m->fuzz_weight * sr_min(1, look_up(FUZZ, m->fuzz.alpha, above));
+    if (m->coat_weight > 0)
+        T *= 1 + m->coat_weight * (coat_transmittance(m, inside_coat(m, above)) *
+                                       (1 - gloss_albedo(m->coat_alpha, m->coat0, above)) - 1);
+    return T;
 }
 
 static sr_spectrum transmission(const struct openpbr *m, const struct choice *choose, sr_vec3 wo, sr_vec3 wi,
                                 enum sr_transport mode, float *pdf)
 {
-    float eta = wo.z < 0 ? 1 / m->eta : m->eta;
-    sr_vec3 h = sr_mad(wo, eta, wi);
-    float length = sr_length(h);
-    if (!(m->glass > 0) || !(length > 1e-10f))
+    struct turn t;
+    if (!(m->glass > 0) || m->eta == 1 || !turn_at(wo, wi, m->eta, &t))
         return SR_BLACK;
-    h = sr_scale((h.z * wo.z < 0 ? -1 : 1) / length, h); // on the side of wo
-    float cos_o = sr_dot(wo, h), cos_i = sr_dot(wi, h), co = fabsf(wo.z), ci = fabsf(wi.z);
-    if (!(cos_o > 0) || !(cos_i < 0))
-        return SR_BLACK;
-    struct facet facet = facet_of(m, cos_o, wo.z < 0);
-    float so = ggx_stretched(m->ggx, wo), si = ggx_stretched(m->ggx, wi), D = ggx_D(m->ggx, h);
-    float jacobian = -cos_i / sr_sqr(cos_i + cos_o / eta), above = wo.z > 0 ? co : ci;
-    *pdf = choose->specular * facet.through * 2 * D * cos_o / (co + so) * jacobian;
-    float value = m->glass * (1 - facet.glass) * 2 * D * cos_o / (so * ci + si * co) * jacobian;
+    struct facet facet = facet_of(m, t.cos_o, wo.z < 0);
+    float co = fabsf(wo.z), ci = fabsf(wi.z), so = ggx_stretched(m->ggx, wo), si = ggx_stretched(m->ggx, wi);
+    float seen = 2 * ggx_D(m->ggx, t.m) * t.cos_o * t.jacobian;
+    *pdf = choose->specular * facet.through * seen / (co + so);
+    float value = m->glass * (1 - turn_fresnel(&t)) * seen / (so * ci + si * co), above = wo.z > 0 ? co : ci;
     if (mode == SR_RADIANCE)
-        value /= eta * eta;
-    if (m->fuzz_weight > 0)
-        value *= 1 - m->fuzz_weight * sr_min(1, look_up(FUZZ, m->fuzz.alpha, above));
-    sr_spectrum coat = SR_ONE;
-    if (m->coat_weight > 0)
-        coat += m->coat_weight * (coat_transmittance(m, inside_coat(m, above)) *
-                                      (1 - gloss_albedo(m->coat_alpha, m->coat0, above)) - 1);
-    return m->transmission_color * coat * value;
+        value /= t.eta * t.eta;
+    return through_layers(m, above) * value;
 }
 
 static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *p)
@@ -395,7 +400,13 @@ static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum s
     } else if ((u_lobe -= choose.fuzz) < choose.diffuse) {
         s->wi = sr_warp_cosine_hemisphere(u);
         s->lobe = SR_LOBE_REFLECTION | SR_LOBE_DIFFUSE;
-    } else if ((u_lobe -= choose.diffuse) < choose.coat)
+    } else if ((u_lobe -= choose.diffuse) < choose.straight) {
+        s->wi = sr_neg(wo);
+        s->lobe = SR_LOBE_TRANSMISSION | SR_LOBE_SPECULAR;
+        s->pdf = choose.straight;
+        s->f = through_layers(m, up.z) * (m->glass / up.z);
+        return true;
+    } else if ((u_lobe -= choose.straight) < choose.coat)
         s->wi = sr_reflect(up, ggx_sample_visible(m->coat, up, u));
     else {
         float rest = (u_lobe - choose.coat) / choose.specular, cos_t, eta = below ? 1 / m->eta : m->eta;

@@ -86,43 +86,33 @@ static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_trans
 {
     const struct principled *m = self;
     *p = 0;
-    bool below = wo.z < 0, transmits = wo.z * wi.z < 0;
-    float glass = (1 - m->metallic) * m->transmission, eta = below ? 1 / m->eta : m->eta;
-    if (wo.z == 0 || wi.z == 0 || (transmits && !(glass > 0)))
+    bool below = wo.z < 0;
+    float glass = (1 - m->metallic) * m->transmission;
+    struct turn t;
+    if (!turn_at(wo, wi, m->eta, &t) || (t.transmits && !(glass > 0)))
         return SR_BLACK;
-    sr_vec3 h = sr_mad(wo, transmits ? eta : 1, wi);
-    float length = sr_length(h);
-    if (!(length > 1e-10f))
-        return SR_BLACK;
-    h = sr_scale((h.z * wo.z < 0 ? -1 : 1) / length, h); // on the side of wo
-    float cos_o = sr_dot(wo, h), cos_i = sr_dot(wi, h);
-    if (!(cos_o > 0) || (transmits ? !(cos_i < 0) : !(cos_i > 0)))
-        return SR_BLACK;
-    float ci = fabsf(wi.z), co = fabsf(wo.z);
-    float so = ggx_stretched(m->ggx, wo), si = ggx_stretched(m->ggx, wi), D = ggx_D(m->ggx, h);
-    float F_glass, through;
+    float ci = fabsf(wi.z), co = fabsf(wo.z), so = ggx_stretched(m->ggx, wo), si = ggx_stretched(m->ggx, wi);
+    float F_glass, through, cos_o = t.cos_o, seen = 2 * ggx_D(m->ggx, t.m) * cos_o * t.jacobian;
     sr_spectrum R = facet(m, cos_o, below, &F_glass, &through);
     struct choice choose = choices(m, co);
-    float visible = 2 * D * cos_o / (co + so), shape = 2 * D * cos_o / (so * ci + si * co);
-    if (transmits) {
-        float jacobian = -cos_i / sr_sqr(cos_i + cos_o / eta);
-        *p = choose.specular * through * visible * jacobian;
+    float visible = seen / (co + so), shape = seen / (so * ci + si * co);
+    if (t.transmits) {
+        *p = choose.specular * through * visible;
         if (mode == SR_RADIANCE)
-            jacobian /= eta * eta;
-        return m->filter * (glass * (1 - F_glass) * shape * jacobian);
+            shape /= t.eta * t.eta;
+        return m->filter * (glass * (1 - F_glass) * shape);
     }
-    float jacobian = 1 / (4 * cos_o);
-    *p = choose.specular * (1 - through) * visible * jacobian + choose.diffuse * ci * SR_INV_PI;
+    *p = choose.specular * (1 - through) * visible + choose.diffuse * ci * SR_INV_PI;
     float FL = schlick_weight(ci), FV = schlick_weight(co), FH = schlick_weight(cos_o);
     float retro = 2 * m->roughness * cos_o * cos_o;
     float matte = (1 - 0.5f * FL) * (1 - 0.5f * FV) + retro * (FL + FV + FL * FV * (retro - 1));
-    sr_spectrum value = R * (shape * jacobian);
+    sr_spectrum value = R * shape;
     value += ((1 - m->metallic) * (1 - m->transmission)) *
              (m->reflectance * (matte * SR_INV_PI) + m->sheen_colour * (m->sheen * FH));
     if (m->clearcoat > 0) {
         float pdf_c;
         value += m->clearcoat *
-                 clearcoat_f(m->clearcoat_gloss, below ? sr_neg(h) : h, cos_o, ci, co, &pdf_c);
+                 clearcoat_f(m->clearcoat_gloss, below ? sr_neg(t.m) : t.m, cos_o, ci, co, &pdf_c);
         *p += choose.clearcoat * pdf_c;
     }
     return value;

@@ -18,11 +18,11 @@ static const struct sr_param params[] = {
 static float pane(float cos_i, float eta, bool sums_as_pbrt)
 {
     cos_i = cos_i < 1 ? cos_i : 1;
-    float sin2_t = (1 - cos_i) * (1 + cos_i) / (eta * eta);
-    if (sin2_t >= 1)
+    float g2 = (eta - 1) * (eta + 1) + cos_i * cos_i; // (eta cos_t)^2
+    if (!(g2 > 0))
         return 1;
-    float ct = sqrtf(1 - sin2_t);
-    float r_p = sr_sqr((eta * cos_i - ct) / (eta * cos_i + ct)), r_s = sr_sqr((cos_i - eta * ct) / (cos_i + eta * ct));
+    float g = sqrtf(g2), dense = eta * eta * cos_i;
+    float r_p = sr_sqr((dense - g) / (dense + g)), r_s = sr_sqr((cos_i - g) / (cos_i + g));
     if (sums_as_pbrt)
         r_p = r_s = (r_p + r_s) * 0.5f;
     return r_p / (1 + r_p) + r_s / (1 + r_s);

@@ -82,14 +82,11 @@ __attribute__((noinline)) static sr_spectrum f_pdf(const void *self, sr_vec3 wo,
     float share = facet_share(m, wo);
     *p = (1 - share) * fabsf(wi.z) * (1 / SR_PI);
     sr_spectrum sum = m->reflectance * (1 / SR_PI);
-    sr_vec3 h = sr_add(wo, wi);
-    float length = sr_length(h);
-    if (!(length > 1e-10f))
+    sr_vec3 h;
+    float cos_m;
+    if (!mirror_facet(wo, wi, &h, &cos_m))
         return sum;
-    h = sr_scale(1 / length, h);
-    float cos_m = sr_dot(wo, h), sine = sqrtf(h.x * h.x + h.y * h.y), tilt = atan2f(sine, fabsf(h.z));
-    if (!(cos_m > 0))
-        return sum;
+    float sine = sqrtf(h.x * h.x + h.y * h.y), tilt = atan2f(sine, fabsf(h.z));
     float zo = fabsf(wo.z), zi = fabsf(wi.z), e = expf(-sr_sqr(tilt / m->alpha));
     float drawn = (sine > 1e-6f ? tilt / sine : 1) * e / (SR_PI * m->alpha * m->alpha * m->cut); // D' m.z
     *p += share * 0.25f * drawn * sr_min(1 / (zo * fabsf(h.z)), 2 / cos_m);

@@ -200,7 +200,7 @@ static sr_status certify(struct work *w, struct sr_certificate *out, struct sr_e
     w->directions = w->specimen ? 24 : 2;
     for (const struct sr_param *p = w->model ? w->model->params : NULL; p && p->name; ++p)
         w->ends += 4;
-    double tests = w->sets * (w->directions * 6.0 + 4) + w->ends + 2;
+    double tests = w->sets * (w->directions * 6.0 + 8) + w->ends + 2;
     w->p = (o->significance > 0 ? o->significance : 1e-6) / tests;
     w->z = -sr_normal_quantile(w->p / 2);
     uint64_t count = w->sets + w->ends;

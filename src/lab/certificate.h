@@ -126,11 +126,17 @@ void lab_check_end(struct certifying *c, const char *name, bool at_max);
 double lab_albedo(struct subject *s, sr_vec3 wo, uint32_t n, int *k);
 /* Whether E(wo) at a wavelength is above what is allowed, by fresh random samples; their mean. */
 bool lab_gains_energy(struct certifying *c, sr_vec3 wo, int k, double *mean);
-/* What f and pdf change under directions that are a few roundings apart: the largest of eight movements, fourfold. */
+/* What f and pdf change under directions that are a few roundings apart: the largest of sixteen movements, fourfold. */
 void lab_sensitivity(const struct subject *s, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, sr_spectrum *df,
                      float *dpdf);
 /* The difference of two values beyond the slack, relative to the larger; NaN counts as 1. */
 double lab_apart(double a, double b, double slack);
+/* Beyond z deviations, what a mean of bounded summands may be off by: ln(2 / p) times the largest share of a single one
+ * (Bernstein 1924, with the largest that was met for the bound). Means of few bright walks are not normally distributed. */
+static inline double lab_bernstein(const struct certifying *c, double largest)
+{
+    return log(2 / c->p) * largest;
+}
 #define LAB_EQUAL 2e-3 // [1] relative deviation between values that ought to be equal
 /* A partner for wo: anywhere, where the sampler looks, near the mirror direction, or straight back. */
 sr_vec3 lab_partner(struct certifying *c, sr_vec3 wo);
