@@ -102,6 +102,18 @@ static inline const char *sr_integrator_blind(const struct sr_integrator *i, con
 /* The strategies by number, NULL where they end. */
 const char *sr_strategy_name(int i);
 const char *sr_strategy_text(int i);
+/* ---- particles of light ---- */
+
+enum sr_particle_event { SR_PARTICLE_EMITTED, SR_PARTICLE_ABSORBED, SR_PARTICLE_ESCAPED, SR_PARTICLE_GIVEN_UP };
+/* Told of each event: flux [lm for each wavelength, as paths have it], the direction of travel, and where it is absorbed; what
+ * light from outside emits is what enters the scene's sphere. w as it is then: dispersion ends wavelengths on the way. */
+struct sr_particle_watch {
+    void (*event)(void *user, enum sr_particle_event event, const struct sr_hit *hit, sr_vec3 d, sr_spectrum flux, const struct sr_wavelengths *w);
+    void *user;
+};
+/* Follows one particle from a light until it is absorbed or leaves the scene. */
+void sr_follow_particle(const struct sr_scene *scene, const struct sr_sampler *sampler, struct sr_wavelengths *w, const struct sr_particle_watch *watch,
+                        struct sr_worker *worker);
 
 /* ---- what the estimators share ---- */
 

@@ -6,7 +6,7 @@
 
 const struct sr_meter_model *const sr_meter_models[] = {
     &meter_irradiance, &meter_cylindrical, &meter_semicylindrical, &meter_hemispherical, &meter_spherical,
-    &meter_fluence,    &meter_radiance,    &meter_flux,            &meter_irradiancemap, NULL,
+    &meter_fluence,    &meter_radiance,    &meter_flux,            &meter_irradiancemap, &meter_intensity, NULL,
 };
 
 const struct sr_meter_model *sr_meter_model_find(const char *name)

@@ -6,7 +6,7 @@
 #include "meter/meter.h"
 
 extern const struct sr_meter_model meter_irradiance, meter_cylindrical, meter_semicylindrical, meter_hemispherical, meter_spherical, meter_fluence,
-    meter_radiance, meter_flux, meter_irradiancemap;
+    meter_radiance, meter_flux, meter_irradiancemap, meter_intensity;
 
 sr_vec3 meter_or_z(sr_vec3 v); // z where none was given
 /* Makes it of unit length, or tells that it has none. */

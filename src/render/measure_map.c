@@ -39,7 +39,7 @@ sr_status sr_measure_map(const struct sr_render_job *job, const struct sr_meter 
     s.samples = s.samples ? s.samples : CELL_SAMPLES;
     s.spectrometer.count = 0;
     *image = NULL;
-    if (!meter->model->raster)
+    if (!meter->model->raster || meter->model->far)
         return sr_fail(error, SR_ERROR_USAGE, "a meter of kind %s makes no map", meter->model->name);
     if (s.replicates < 2 || s.replicates > MOST_REPLICATES)
         return sr_fail(error, SR_ERROR_USAGE, "%u replicates: expected 2 to %d", (unsigned)s.replicates, MOST_REPLICATES);

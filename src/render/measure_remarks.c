@@ -101,6 +101,8 @@ void measure_remarks(const struct measuring *m, struct sr_measurement *out)
     const char *blind = integrator->blind ? integrator->blind(m->job->integrator.self, m->job->scene) : NULL;
     if (blind)
         remark(out, "%s", blind);
+    if (integrator->splat && m->meter->model->is_ray && m->meter->model->is_ray(m->meter->self))
+        remark(out, "paths from the lights do not meet a meter that looks along one ray: only what comes straight from a light is in the reading");
     if (out->samples == 0)
         return;
     struct surroundings s = look_around(m);

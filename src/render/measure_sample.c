@@ -5,7 +5,9 @@
  *
  * estimated twice, by directions in proportion to the response and by directions toward a light, weighed by their densities
  * (Veach 1997, power heuristic). An estimator that does not know receivers is asked along the
- * first kind alone; one that gathers does it all by itself. */
+ * first kind alone; one that gathers does it all by itself. Paths from the lights are joined to the meter's point at each vertex:
+ *
+ *     reading = E[ sum beta f |cos theta| response(wi) / r^2 V / density ] */
 #include "render/measure.h"
 
 /* The numbers of a sample beside those of its bounces, far from their groups. */
@@ -28,6 +30,51 @@ static sr_spectrum direct(const struct measuring *m, const struct sr_meter_place
     return l.L * (response * (l.is_delta ? 1 : sr_mis_weight(pdf, m->meter->model->pdf(m->meter->self, wi))) / pdf);
 }
 
+/* A place of the meter, for paths from the lights. */
+struct receiving {
+    const struct sr_meter *meter;
+    const struct sr_meter_place *at;
+    sr_spectrum sum;
+};
+
+static bool connect(const void *self, sr_vec3 p, sr_vec2 u, struct sr_sensor_view *view)
+{
+    (void)u;
+    const struct receiving *r = self;
+    sr_vec3 to = sr_sub(r->at->x.p, p);
+    float r2 = sr_length2(to), distance = sqrtf(r2);
+    if (!(r2 > 0))
+        return false;
+    sr_vec3 wi = sr_scale(1 / distance, to), back = sr_neg(wi);
+    *view = (struct sr_sensor_view){.p = sr_point_offset(&r->at->x, back), .wi = wi, .distance = distance,
+                                    .weight = r->meter->model->response(r->meter->self, sr_to_local(&r->at->frame, back)) / r2};
+    return view->weight != 0;
+}
+
+static void receive(void *user, sr_vec2 raster, sr_spectrum gain, const struct sr_wavelengths *w)
+{
+    (void)raster, (void)w;
+    ((struct receiving *)user)->sum += gain;
+}
+
+static sr_spectrum from_lights(const struct measuring *m, const struct sr_meter_place *at, const struct sr_sampler *sampler, struct sr_wavelengths *w,
+                               struct sr_worker *worker)
+{
+    struct receiving r = {m->meter, at, SR_BLACK};
+    struct sr_target target = {.self = &r, .connect = connect, .pixels = 1, .sampler = *sampler, .add = receive, .user = &r};
+    worker->target = &target;
+    m->job->integrator.model->splat(m->job->integrator.self, m->job->scene, w, worker);
+    worker->target = NULL;
+    return r.sum;
+}
+
+static void add_escaped(void *user, enum sr_particle_event event, const struct sr_hit *hit, sr_vec3 d, sr_spectrum flux, const struct sr_wavelengths *w)
+{
+    (void)hit, (void)d, (void)w;
+    if (event == SR_PARTICLE_ESCAPED)
+        *(sr_spectrum *)user += flux;
+}
+
 static sr_spectrum estimate(const struct measuring *m, const struct sr_sampler *sampler, struct sr_wavelengths *w, struct sr_worker *worker)
 {
     const struct sr_meter_model *model = m->meter->model;
@@ -37,6 +84,11 @@ static sr_spectrum estimate(const struct measuring *m, const struct sr_sampler *
     sr_sample8(sampler, SR_USE_FILM, &u, &u_light);
     *w = sr_wavelengths_sample(m->lambda, m->job->jitter_lambda ? u_place[2] : 0.5f);
     sr_wavelengths_know(w, sr_scene_lights(m->job->scene)->white);
+    if (model->far) {
+        sr_spectrum flux = SR_BLACK;
+        sr_follow_particle(m->job->scene, sampler, w, &(struct sr_particle_watch){add_escaped, &flux}, worker);
+        return flux;
+    }
     struct sr_meter_place at;
     sr_vec2 where = {u_place[0], u_place[1]};
     if (!(m->cell == UINT32_MAX ? model->place(self, where, &at) : model->place_in(self, m->cell, where, &at)))
@@ -58,6 +110,8 @@ static sr_spectrum estimate(const struct measuring *m, const struct sr_sampler *
         struct sr_path_start start = {.ray = sr_leave(&at.x, sr_to_world(&at.frame, wi)), .receiver = aims ? &at.x : NULL, .pdf = pdf};
         sum += integrator->model->L(integrator->self, m->job->scene, &start, sampler, w, NULL, worker) * (response / pdf);
     }
+    if (integrator->model->splat && !is_ray)
+        sum += from_lights(m, &at, sampler, w, worker);
     return sum * at.weight;
 }
 

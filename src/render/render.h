@@ -112,6 +112,30 @@ sr_status sr_measure(const struct sr_render_job *job, const struct sr_meter *met
 sr_status sr_measure_map(const struct sr_render_job *job, const struct sr_meter *meter, const struct sr_measure_settings *settings,
                          struct sr_image **image, struct sr_error *error);
 
+/* Where the light of a scene goes, by particles from its lights; [0] photopic [lm], [1] radiometric [W]. */
+struct sr_balance {
+    struct sr_quantity emitted[2], absorbed[2], escaped[2];
+    struct sr_quantity given_up[2]; // still under way after 100000 scatterings
+    struct sr_quantity closure[2];  // emitted less all others
+    uint32_t materials, objects;
+    struct sr_quantity (*by_material)[2], (*by_object)[2]; // absorbed; material and object numbers less 1
+    uint64_t samples, dropped;
+};
+sr_status sr_measure_balance(const struct sr_render_job *job, const struct sr_measure_settings *settings, struct sr_arena *arena, struct sr_balance *out,
+                             struct sr_error *error);
+
+/* What a meter of the far field sees: the luminaire that the scene is. Kept in the arena. */
+struct sr_intensity_table {
+    uint32_t c_count, gamma_count;
+    float *c, *gamma;      // [deg]
+    float *I, *u;          // mean over the cell and its standard uncertainty, plane by plane [unit]
+    struct sr_unit unit;   // cd, W/sr
+    struct sr_quantity flux;
+    uint64_t samples;
+};
+sr_status sr_measure_intensity(const struct sr_render_job *job, const struct sr_meter *meter, const struct sr_measure_settings *settings,
+                               struct sr_arena *arena, struct sr_intensity_table *out, struct sr_error *error);
+
 /* A thin case: irradiance at p on a surface element with normal n. */
 struct sr_irradiance {
     double E_v, E_v_error; // [lx]
