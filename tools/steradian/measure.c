@@ -34,7 +34,9 @@ static const char help[] =
     "      --points           lines \"x y z nx ny nz\" [m] on standard input: irradiance there\n"
     "      --rays             lines \"x y z dx dy dz\" [m]: radiance that arrives from there\n"
     "                         out comes, for each line, the reading and its expanded uncertainty\n"
-    "  -o, --outfile FILE     where an irradiance map is written: .exr or .pfm, with its standard error\n"
+    "      --balance          where the light of the scene goes: emitted, absorbed by each material and shape, escaped\n"
+    "  -o, --outfile FILE     where an irradiance map is written: .exr or .pfm, with its standard error; or an intensity\n"
+    "                         distribution: .ies, .ldt, or .csv with its standard uncertainty\n"
     "      --json             the readings as JSON; of streams a line of JSON for each line\n"
     "  -q, --quiet            no notes; warnings and errors stay\n"
     "\n"
@@ -49,7 +51,7 @@ static const char help[] =
 
 enum {
     OPT_LIST = 256, OPT_QUANTITY, OPT_SPECTRUM, OPT_FWHM, OPT_BANDPASS, OPT_COLOUR, OPT_ERROR, OPT_TIME, OPT_SAMPLES, OPT_REPLICATES, OPT_ESTIMATOR,
-    OPT_SEED, OPT_THREADS, OPT_SAMPLER, OPT_LAMBDA, OPT_POINTS, OPT_RAYS, OPT_JSON, OPT_UNITS,
+    OPT_SEED, OPT_THREADS, OPT_SAMPLER, OPT_LAMBDA, OPT_POINTS, OPT_RAYS, OPT_JSON, OPT_UNITS, OPT_BALANCE,
 };
 
 static const struct option long_options[] = {
@@ -74,6 +76,7 @@ static const struct option long_options[] = {
     {"points", no_argument, NULL, OPT_POINTS},
     {"rays", no_argument, NULL, OPT_RAYS},
     {"outfile", required_argument, NULL, 'o'},
+    {"balance", no_argument, NULL, OPT_BALANCE},
     {"json", no_argument, NULL, OPT_JSON},
     {"quiet", no_argument, NULL, 'q'},
     {NULL, 0, NULL, 0},
@@ -196,6 +199,9 @@ static int parse(int argc, char **argv, struct measure_arguments *a)
             break;
         case OPT_RAYS:
             a->input = MEASURE_RAYS;
+            break;
+        case OPT_BALANCE:
+            a->balance = true;
             break;
         case OPT_JSON:
             a->json = true;
@@ -353,7 +359,7 @@ static int measure_scene(const struct measure_arguments *a, const struct sr_impo
         maps += chosen[i] && scene->meters[i].model->raster;
     }
     if (a->outfile && maps != 1)
-        return command_usage(&command_measure, "-o writes one irradiance map, and %d are asked for: choose with --meter", maps);
+        return command_usage(&command_measure, "-o writes one map or intensity distribution, and %d are asked for: choose with --meter", maps);
     for (uint32_t i = 0; i < scene->meter_count && is_complete && !error.status; ++i) {
         const struct sr_meter *meter = &scene->meters[i];
         if (!chosen[i])
@@ -376,7 +382,7 @@ static int measure_scene(const struct measure_arguments *a, const struct sr_impo
         for (uint32_t k = 0; k < m.remark_count; ++k)
             fprintf(stderr, "warning: meter \"%s\": %s\n", sr_meter_common(meter)->name, m.remarks[k]);
         if (a->outfile && meter->model->raster && is_complete)
-            write_map(a, &job, meter, &error);
+            meter->model->far ? measure_write_intensity(a, &job, meter, &error) : write_map(a, &job, meter, &error);
     }
     sr_arena_free(&arena);
     if (error.status && error.status != SR_CANCELLED) {
@@ -421,6 +427,10 @@ static int run(int argc, char **argv)
         struct sr_render_job job = make_job(&a, &scene);
         render_catch_interrupts();
         code = measure_stream(&a, &job);
+    } else if (a.balance) {
+        struct sr_render_job job = make_job(&a, &scene);
+        render_catch_interrupts();
+        code = measure_balance(&a, &job);
     } else if (scene.meter_count == 0) {
         fprintf(stderr, "steradian measure: error: %s: the scene has no meters; a line such as\n"
                         "  #@ Meter \"irradiance\" \"string name\" \"desk\" \"point3 p\" [0 0 0.8] \"normal n\" [0 0 1]\n"

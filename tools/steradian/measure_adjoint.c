@@ -9,13 +9,23 @@
 
 /* ---- balance ---- */
 
+static void print_quantity(const char *name, const char *symbol, const struct sr_quantity *q)
+{
+    char text[256], unit[32];
+    sr_unit_text(q->unit, unit, sizeof unit);
+    if (q->value == 0 && q->u == 0)
+        printf("%-16s %s = 0 %s\n", name, symbol, unit);
+    else
+        printf("%-16s %s\n", name, sr_quantity_text(symbol, q, text, sizeof text));
+}
+
 static void print_line(const struct measure_arguments *a, const char *name, const struct sr_quantity q[2])
 {
-    char text[256];
-    if (a->systems[SR_PHOTOPIC])
-        printf("%-16s %s\n", name, sr_quantity_text("Phi_v", &q[0], text, sizeof text));
-    if (a->systems[SR_RADIOMETRIC] || !a->systems[SR_PHOTOPIC])
-        printf("%-16s %s\n", name, sr_quantity_text("Phi_e", &q[1], text, sizeof text));
+    bool is_photopic = a->systems[SR_PHOTOPIC] || !a->systems[SR_RADIOMETRIC];
+    if (is_photopic)
+        print_quantity(name, sr_kind_symbol(SR_KIND_FLUX, SR_PHOTOPIC), &q[0]);
+    if (a->systems[SR_RADIOMETRIC])
+        print_quantity(name, sr_kind_symbol(SR_KIND_FLUX, SR_RADIOMETRIC), &q[1]);
 }
 
 static json_t *both(const struct sr_quantity q[2])

@@ -104,8 +104,8 @@ TEST(densities_of_directions_are_those_of_what_is_drawn)
     enum { CELLS_Z = 8, CELLS_PHI = 8, CELLS = CELLS_Z * CELLS_PHI, DRAWS = 1 << 16, FINE = 16 };
     for (int k = 0; sr_meter_models[k]; ++k) {
         struct made m = {0};
-        if (strcmp(sr_meter_models[k]->name, "radiance") == 0)
-            continue; // a delta, and a cone that is tested below
+        if (strcmp(sr_meter_models[k]->name, "radiance") == 0 || sr_meter_models[k]->far)
+            continue; // a delta, and a cone that is tested below; meters of the far field draw nothing
         m = make(sr_meter_models[k]->name);
         EXPECT_RELATIVE(over_sphere(&m.meter, of_pdf), 1, 2e-4);
         double seen[CELLS] = {0}, expected[CELLS] = {0};
@@ -292,4 +292,39 @@ TEST(colours_of_black_bodies_and_daylight_are_the_known_ones)
     double black[SR_COLOUR_COUNT] = {0};
     sr_colour_of(black);
     EXPECT(isnan(black[SR_COLOUR_x]) && isnan(black[SR_COLOUR_DUV]));
+}
+
+TEST(cells_of_a_goniophotometer_share_the_sphere)
+{
+    struct made m = {0};
+    void *self = self_of(&m, "intensity");
+    *(sr_vec3 *)member(m.meter.model->params, self, "axis") = (sr_vec3){1, 2, 3};
+    *(sr_vec3 *)member(m.meter.model->params, self, "facing") = (sr_vec3){3, 0, -1};
+    prepare(&m);
+    uint32_t planes, rows;
+    m.meter.model->raster(m.meter.self, &planes, &rows);
+    EXPECT(planes == 24 && rows == 37);
+    enum { DRAWS = 400000, CELLS = 24 * 37 };
+    static double seen[CELLS], expected[CELLS];
+    double all = 0;
+    for (uint32_t k = 0; k < CELLS; ++k) {
+        double c, gamma, solid_angle = m.meter.model->cell(m.meter.self, k, &c, &gamma);
+        EXPECT_NEAR(c, k % planes * 15.0, 1e-9);
+        EXPECT_NEAR(gamma, k / planes * 5.0, 1e-9);
+        bool is_pole = k / planes == 0 || k / planes == rows - 1;
+        if (!is_pole || k % planes == 0)
+            all += solid_angle, expected[k] = DRAWS * solid_angle / (4 * (double)SR_PI);
+    }
+    EXPECT_RELATIVE(all, 4 * (double)SR_PI, 1e-6);
+    struct sr_rng rng = sr_rng_seed(3, 3);
+    for (int i = 0; i < DRAWS; ++i)
+        seen[m.meter.model->far(m.meter.self, sr_warp_uniform_sphere((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)}))] += 1;
+    EXPECT_CHI2(seen, expected, CELLS);
+    // gamma 90, C 0 and C 90: seen against the axis, against the clock
+    sr_vec3 axis = sr_normalize((sr_vec3){1, 2, 3}), facing = sr_normalize((sr_vec3){3, 0, -1}), left = sr_cross(facing, axis);
+    EXPECT_EQUAL_INT(m.meter.model->far(m.meter.self, facing), 18 * planes);
+    EXPECT_EQUAL_INT(m.meter.model->far(m.meter.self, left), 18 * planes + 6);
+    EXPECT_EQUAL_INT(m.meter.model->far(m.meter.self, axis), 0);
+    EXPECT_EQUAL_INT(m.meter.model->far(m.meter.self, sr_neg(axis)), 36 * planes);
+    sr_arena_free(&m.arena);
 }

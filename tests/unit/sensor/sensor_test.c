@@ -292,3 +292,84 @@ TEST(nonsense_is_refused)
     expect_refused(&m, 10, sr_transform_identity());
     sr_arena_free(&m.arena);
 }
+
+/* ---- importance ---- */
+
+static struct made importance_case(int i)
+{
+    struct made m = make(i < 2 ? "perspective" : i < 4 ? "orthographic" : "spherical");
+    if (i < 4) {
+        set(&m, "lensradius", i % 2 ? 0.3f : 0);
+        set(&m, "focaldistance", 2.5f);
+    }
+    if (i < 2)
+        set(&m, "fov", 70);
+    if (i == 5)
+        *(int32_t *)member(&m, "mapping") = 1;
+    struct sr_transform turn = sr_transform_rotate(35, (sr_vec3){1, -2, 0.5f}), move = sr_transform_translate((sr_vec3){1, 2, 3}),
+                        stretch = sr_transform_scale(i < 4 ? (sr_vec3){-1.5f, 1.2f, 0.8f} : (sr_vec3){1, -1, 1});
+    struct sr_transform t = sr_transform_multiply(&move, &turn);
+    prepare(&m, 40, 24, sr_transform_multiply(&t, &stretch));
+    return m;
+}
+
+TEST(connections_are_rays_backwards)
+{
+    struct sr_rng rng = sr_rng_seed(1, 1);
+    for (int k = 0; k < 6; ++k) {
+        struct made m = importance_case(k);
+        for (int i = 0; i < 2000; ++i) {
+            sr_vec2 q = {40 * sr_rng_float(&rng), 24 * sr_rng_float(&rng)}, u = {sr_rng_float(&rng), sr_rng_float(&rng)};
+            struct sr_sensor_ray r = look(&m, q.x, q.y, u);
+            float t = 0.2f + 4 * sr_rng_float(&rng);
+            struct sr_sensor_view v;
+            EXPECT(m.model->connect(m.self, sr_mad(r.ray.o, t, r.ray.d), u, &v));
+            EXPECT_NEAR(v.raster.x, q.x, 2e-3);
+            EXPECT_NEAR(v.raster.y, q.y, 2e-3);
+            EXPECT_NEAR(v.distance, t, 1e-5 * (double)t + 3e-6);
+            EXPECT_NEAR(sr_length(sr_add(v.wi, r.ray.d)), 0, 3e-5);
+            EXPECT_NEAR(sr_length(sr_sub(v.p, r.ray.o)), 0, 2e-5);
+            EXPECT_RELATIVE(v.weight, m.model->density(m.self, r.ray.d, t), 2e-4);
+            // the raster's area is that of the cross section which its corners' rays cut out
+            if (k == 4 && i > 200)
+                continue; // the octahedral map's creases are nearly everywhere within reach of coarse steps
+            const float h = 0.02f;
+            if (k == 5 && (q.y < 1 || q.y > 23))
+                continue;
+            sr_vec3 p[4], d = r.ray.d;
+            for (int c = 0; c < 4; ++c) {
+                struct sr_sensor_ray s = look(&m, q.x + (c & 1 ? h : -h), q.y + (c & 2 ? h : -h), u);
+                float reach = sr_dot(sr_sub(sr_mad(r.ray.o, t, d), s.ray.o), d) / sr_dot(s.ray.d, d);
+                p[c] = sr_mad(s.ray.o, reach, s.ray.d);
+            }
+            double area = 0.5 * (double)sr_length(sr_cross(sr_sub(p[3], p[0]), sr_sub(p[2], p[1])));
+            if (k != 4)
+                EXPECT_RELATIVE((double)v.weight * area, 4 * (double)h * (double)h, 0.02);
+        }
+        sr_arena_free(&m.arena);
+    }
+}
+
+// the integral of the weight over all places that a picture sees is the number of its pixels
+TEST(importance_integrates_to_the_raster)
+{
+    struct sr_rng rng = sr_rng_seed(2, 2);
+    for (int k = 0; k < 6; ++k) {
+        struct made m = importance_case(k);
+        struct sr_tally all = {0};
+        struct sr_sensor_ray axis = look(&m, 20, 12, middle);
+        const float radius = 8; // a sphere around the sensor, wide enough for parallel rays to leave through it once
+        for (int i = 0; i < 400000; ++i) {
+            sr_vec3 n = sr_warp_uniform_sphere((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)});
+            struct sr_sensor_view v;
+            double value = 0;
+            if (m.model->connect(m.self, sr_mad(axis.ray.o, radius, n), (sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)}, &v) && v.raster.x >= 0 &&
+                v.raster.x < 40 && v.raster.y >= 0 && v.raster.y < 24 && sr_dot(n, v.wi) < 0)
+                value = (double)(v.weight * -sr_dot(n, v.wi)) * 4 * (double)SR_PI * (double)(radius * radius);
+            sr_tally_add(&all, value);
+        }
+        printf("    sensor %d: %.2f pixels +- %.2f\n", k, all.mean, sr_tally_standard_error(&all));
+        EXPECT_MEAN(all, 40 * 24);
+        sr_arena_free(&m.arena);
+    }
+}
