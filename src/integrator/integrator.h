@@ -102,6 +102,7 @@ static inline const char *sr_integrator_blind(const struct sr_integrator *i, con
 /* The strategies by number, NULL where they end. */
 const char *sr_strategy_name(int i);
 const char *sr_strategy_text(int i);
+
 /* ---- particles of light ---- */
 
 enum sr_particle_event { SR_PARTICLE_EMITTED, SR_PARTICLE_ABSORBED, SR_PARTICLE_ESCAPED, SR_PARTICLE_GIVEN_UP };
