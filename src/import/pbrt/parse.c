@@ -159,7 +159,7 @@ static sr_status read_annotation(struct sr_pbrt_parser *p, const struct sr_pbrt_
         struct sr_pbrt_suggestion s = {.word = word};
         for (d = sr_pbrt_annotations; d->word; ++d)
             sr_pbrt_suggest(&s, d->word);
-        sr_pbrt_warn(p->d, token->where, "#@ %s is not known%s; it stays a comment", word, sr_pbrt_suggestion_text(&s, buffer));
+        sr_pbrt_warn(p->d, token->where, "#@ %s is not known, and stays a comment%s", word, sr_pbrt_suggestion_text(&s, buffer));
         return skip_annotation(p->lexer, token->where.line, p->error);
     }
     if (check_block(p, d, token) != SR_OK)
