@@ -44,7 +44,7 @@ static struct means render_by(const char *path, const char *integrator, uint32_t
     return m;
 }
 
-static void compare(const char *name, const char *by, const struct means *a, const struct means *b)
+static void compare(const char *name, const char *by, const char *with, const struct means *a, const struct means *b)
 {
     double chi2 = 0, worst = 0, relative = 0, mean_a = 0, mean_b = 0;
     int n = 0;
@@ -66,7 +66,7 @@ static void compare(const char *name, const char *by, const struct means *a, con
             relative = fmax(relative, sqrt(v) / fabs(y->mean));
         }
     double p = n ? sr_chi2_p(chi2, QUARTERS) : 1;
-    printf("  %-28s %-9s / path %.5f  worst |z| %.2f  p %.3g  relative error to %.2g %%\n", name, by, mean_a / mean_b, worst, p, 100 * relative);
+    printf("  %-28s %-9s / %-9s %.5f  worst |z| %.2f  p %.3g  relative error to %.2g %%\n", name, by, with, mean_a / mean_b, worst, p, 100 * relative);
     EXPECT(worst < 4.9 && p > 1e-6);
 }
 
@@ -129,10 +129,27 @@ TEST(paths_from_both_ends_bring_the_same_light)
         const char *path = scene_file("adjoint.pbrt", scenes[i].text);
         struct means by_path = render_by(path, "path", scenes[i].path_spp, 1);
         struct means by_both = render_by(path, "bdpt", scenes[i].bdpt_spp, 2);
-        compare(scenes[i].name, "bdpt", &by_both, &by_path);
+        compare(scenes[i].name, "bdpt", "path", &by_both, &by_path);
         if (scenes[i].light_spp) {
             struct means by_light = render_by(path, "lightpath", scenes[i].light_spp, 3);
-            compare(scenes[i].name, "lightpath", &by_light, &by_path);
+            compare(scenes[i].name, "lightpath", "path", &by_light, &by_path);
         }
     }
+}
+
+/* A point light through a clear ball: no path from a sensor meets either. The ball is out of sight, as paths from the lights do not
+ * see it. */
+TEST(paths_from_both_ends_bring_the_same_caustic)
+{
+    const char *path = scene_file("caustic.pbrt", "LookAt 0 -.9 -1.5  0 -1 1  0 1 0 Camera \"perspective\" \"float fov\" 30 " FILM WHITE FLOOR BACK
+                                  "LightSource \"point\" \"point3 from\" [.1 1.2 .2] \"float power\" 40 Material \"dielectric\" \"float eta\" 1.5\n" BALL("0", "0", ".3", ".35"));
+    struct means by_both = render_by(path, "bdpt", 256, 2), by_light = render_by(path, "lightpath", 512, 3), by_path = render_by(path, "path", 64, 1);
+    compare("a caustic of a point light", "bdpt", "lightpath", &by_both, &by_light);
+    double seen = 0, missed = 0;
+    for (int q = 0; q < QUARTERS; ++q) {
+        seen += by_both.of[q][1].mean;
+        missed += by_path.of[q][1].mean;
+    }
+    printf("  path sees %.3f of it\n", missed / seen);
+    EXPECT(missed < 0.95 * seen); // or there is no caustic in the picture
 }

@@ -22,11 +22,11 @@ static uint64_t hash_of(struct sr_render_job job, int threads, int tile)
     return hash;
 }
 
-static void expect_one_hash(uint32_t replicates)
+static void expect_one_hash(const char *integrator, uint32_t replicates)
 {
     struct sr_import_result scene;
     struct sr_error error = {0};
-    struct sr_import_options options = {.width = 70, .height = 50, .spp = 8};
+    struct sr_import_options options = {.width = 70, .height = 50, .spp = 8, .integrator = integrator};
     if (!import_scene(SR_TEST_SOURCE_DIR "/scenes/cornell-box.pbrt", &options, &scene, &error))
         test_fail(__FILE__, __LINE__, "%s", error.text);
     struct sr_render_job job = job_of(&scene);
@@ -43,12 +43,18 @@ static void expect_one_hash(uint32_t replicates)
 
 TEST(bytes_do_not_depend_on_threads_or_tiles)
 {
-    expect_one_hash(0);
+    expect_one_hash(NULL, 0);
 }
 
 TEST(bytes_of_replicates_do_not_depend_on_threads_or_tiles)
 {
-    expect_one_hash(4);
+    expect_one_hash(NULL, 4);
+}
+
+TEST(bytes_of_splats_do_not_depend_on_threads_or_tiles)
+{
+    expect_one_hash("lightpath", 0);
+    expect_one_hash("bdpt", 4);
 }
 
 TEST(one_sample_alone_is_what_the_render_added)
@@ -80,11 +86,11 @@ TEST(one_sample_alone_is_what_the_render_added)
 }
 
 /* No allocation after the start: twice the samples, the same number of calls. */
-TEST(samples_allocate_nothing)
+static void expect_no_allocation(const char *integrator)
 {
     struct sr_import_result scene;
     struct sr_error error = {0};
-    struct sr_import_options options = {.width = 32, .height = 32, .spp = 4};
+    struct sr_import_options options = {.width = 32, .height = 32, .spp = 4, .integrator = integrator};
     if (!import_scene(SR_TEST_SOURCE_DIR "/scenes/cornell-box.pbrt", &options, &scene, &error))
         test_fail(__FILE__, __LINE__, "%s", error.text);
     struct sr_render_job job = job_of(&scene);
@@ -98,4 +104,11 @@ TEST(samples_allocate_nothing)
     }
     EXPECT_EQUAL_INT(calls[1], calls[0]);
     sr_import_result_free(&scene);
+}
+
+TEST(samples_allocate_nothing)
+{
+    expect_no_allocation(NULL);
+    expect_no_allocation("lightpath");
+    expect_no_allocation("bdpt");
 }
