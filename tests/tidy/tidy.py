@@ -23,7 +23,7 @@ FLOORS = [
     ["scene"],
     ["integrator"],
     ["import"],
-    ["render", "lab", "glare"],
+    ["render", "lab", "glare", "study"],
     ["api"],
 ]
 # Rooms that may know a neighbour on a lower floor's behalf: none today.

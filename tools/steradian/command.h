@@ -17,7 +17,8 @@ struct command {
     const char *name, *summary, *help; // help NULL: it has subcommands, and helps by itself
     int (*run)(int argc, char **argv);
 };
-extern const struct command command_render, command_measure, command_info, command_compare, command_image, command_brdf, command_glare, command_validate;
+extern const struct command command_render, command_measure, command_info, command_compare, command_image, command_brdf, command_glare, command_validate,
+    command_converge;
 
 /* ---- messages ---- */
 
