@@ -246,6 +246,7 @@ sr_status sr_measure(const struct sr_render_job *job, const struct sr_meter *met
         m.lambda.lo = fminf(m.lambda.lo, (float)fmax(1, sp->first - sp->fwhm));
         m.lambda.hi = fmaxf(m.lambda.hi, (float)(sp->first + sp->step * (sp->count - 1) + sp->fwhm));
     }
+    measure_prepare(&m);
     *out = (struct sr_measurement){0};
     sr_status status = check(&s, error);
     if (status != SR_OK)

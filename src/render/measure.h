@@ -21,6 +21,7 @@ struct measuring {
     uint32_t replicates, channels;
     uint32_t stream, round; // which random numbers
     uint32_t cell;          // of a map; UINT32_MAX: no map
+    enum { AIM_NEVER, AIM_AT_DELTAS, AIM_AT_ALL } aim; // from the meter straight at lights
     struct sr_lambda_range lambda; // [nm] the job's, and what the spectrometer's outer bins reach beyond it
 };
 
@@ -30,6 +31,8 @@ bool measure_sample(const struct measuring *m, uint32_t replicate, uint32_t samp
 /* Adds samples [begin, end) of a replicate; false: cancelled, the sums are of no use. */
 bool measure_run(const struct measuring *m, uint32_t replicate, uint64_t begin, uint64_t end, struct measure_sums *sums);
 bool measure_is_cancelled(const struct sr_render_job *job);
+/* Settles what all samples have in common. */
+void measure_prepare(struct measuring *m);
 
 /* What there is to say about a finished measurement; where nothing has been found, readings become bounds. */
 void measure_remarks(const struct measuring *m, struct sr_measurement *out);

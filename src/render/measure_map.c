@@ -58,6 +58,7 @@ sr_status sr_measure_map(const struct sr_render_job *job, const struct sr_meter 
               .lambda = job->lambda},
         .n = (s.samples + s.replicates - 1) / s.replicates, .image = made,
     };
+    measure_prepare(&map.m);
     for (uint64_t i = 0; i < 2 * (uint64_t)width * height; ++i)
         made->floats[i] = NAN; // until measured
     sr_parallel_for(job->threads > 0 ? job->threads : sr_thread_count(), (uint64_t)width * height, measure_cell, &map);

@@ -5,7 +5,7 @@
  *
  * estimated twice, by directions in proportion to the response and by directions toward a light, weighed by their densities
  * (Veach 1997, power heuristic). An estimator that does not know receivers is asked along the
- * first kind alone; one that gathers does it all by itself. Paths from the lights are joined to the meter's point at each vertex:
+ * first kind alone, and lights that no direction meets are added; one that gathers does it all by itself. Paths from the lights are joined to the meter's point at each vertex:
  *
  *     reading = E[ sum beta f |cos theta| response(wi) / r^2 V / density ] */
 #include "render/measure.h"
@@ -25,7 +25,7 @@ static sr_spectrum direct(const struct measuring *m, const struct sr_meter_place
         return SR_BLACK;
     sr_vec3 wi = sr_to_local(&at->frame, l.wi);
     float response = m->meter->model->response(m->meter->self, wi), pdf = pmf * l.pdf;
-    if (response == 0 || !sr_unoccluded(scene, &at->x, &l, worker))
+    if (response == 0 || (m->aim == AIM_AT_DELTAS && !l.is_delta) || !sr_unoccluded(scene, &at->x, &l, worker))
         return SR_BLACK;
     return l.L * (response * (l.is_delta ? 1 : sr_mis_weight(pdf, m->meter->model->pdf(m->meter->self, wi))) / pdf);
 }
@@ -75,6 +75,15 @@ static void add_escaped(void *user, enum sr_particle_event event, const struct s
         *(sr_spectrum *)user += flux;
 }
 
+/* Where an estimator finds lights that no direction meets, wherever it scatters, the meter finds them, too. */
+void measure_prepare(struct measuring *m)
+{
+    const struct sr_integrator *integrator = &m->job->integrator;
+    bool is_ray = m->meter->model->is_ray && m->meter->model->is_ray(m->meter->self);
+    bool is_blind = integrator->model->blind && integrator->model->blind(integrator->self, m->job->scene);
+    m->aim = is_ray ? AIM_NEVER : integrator->model->knows_receivers ? AIM_AT_ALL : is_blind ? AIM_NEVER : AIM_AT_DELTAS;
+}
+
 static sr_spectrum estimate(const struct measuring *m, const struct sr_sampler *sampler, struct sr_wavelengths *w, struct sr_worker *worker)
 {
     const struct sr_meter_model *model = m->meter->model;
@@ -94,7 +103,7 @@ static sr_spectrum estimate(const struct measuring *m, const struct sr_sampler *
     if (!(m->cell == UINT32_MAX ? model->place(self, where, &at) : model->place_in(self, m->cell, where, &at)))
         return SR_BLACK;
     at.x.time = u_place[3];
-    bool is_ray = model->is_ray && model->is_ray(self), aims = integrator->model->knows_receivers && !is_ray;
+    bool is_ray = model->is_ray && model->is_ray(self);
     if (integrator->model->gather && !is_ray) {
         bool is_upper = sr_length2(at.x.n) > 0 && model->response(self, (sr_vec3){0, 0, -1}) == 0; // a surface element, not its net flux
         struct sr_receiver receiver = {at.x, at.frame, self, model->response, model->sample, model->pdf, is_upper};
@@ -103,11 +112,11 @@ static sr_spectrum estimate(const struct measuring *m, const struct sr_sampler *
     sr_vec3 wi;
     float pdf = model->sample(self, u, &wi);
     sr_spectrum sum = SR_BLACK;
-    if (aims)
+    if (m->aim != AIM_NEVER)
         sum = direct(m, &at, u_light, w, worker);
     float response = pdf > 0 ? model->response(self, wi) : 0;
     if (response != 0) {
-        struct sr_path_start start = {.ray = sr_leave(&at.x, sr_to_world(&at.frame, wi)), .receiver = aims ? &at.x : NULL, .pdf = pdf};
+        struct sr_path_start start = {.ray = sr_leave(&at.x, sr_to_world(&at.frame, wi)), .receiver = m->aim == AIM_AT_ALL ? &at.x : NULL, .pdf = pdf};
         sum += integrator->model->L(integrator->self, m->job->scene, &start, sampler, w, NULL, worker) * (response / pdf);
     }
     if (integrator->model->splat && !is_ray)

@@ -118,7 +118,7 @@ TEST(measure_writes_a_map_with_its_error)
         EXPECT_RELATIVE(image->floats[i * image->channel_count + (size_t)y], 3.14159265, 2e-3);
     EXPECT_EQUAL_TEXT(image->channels[y].unit, "lx");
     sr_image_free(image);
-    EXPECT_SAYS(run_expecting(2, "measure " BENCH " -o map.exr -m ball")->err, "-o writes one irradiance map, and 0 are asked for");
+    EXPECT_SAYS(run_expecting(2, "measure " BENCH " -o map.exr -m ball")->err, "-o writes one map or intensity distribution, and 0 are asked for");
 }
 
 TEST(measure_says_what_is_wrong)
