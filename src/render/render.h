@@ -144,6 +144,34 @@ struct sr_irradiance {
 };
 struct sr_irradiance sr_render_irradiance(const struct sr_render_job *job, sr_vec3 p, sr_vec3 n, uint32_t samples, uint32_t replicates);
 
+/* ---- a gonioreflectometer: gonio.c ---- */
+
+struct sr_gonio {
+    const struct sr_scene *scene;
+    uint32_t seed, samples, replicates; // samples: paths of each replicate
+    int threads;                        // 0: all processors
+};
+
+/* Parallel light on a patch of a specimen that lies in the plane z = 0, its normal +z. The patch is where the beam crosses the
+ * plane above all of the specimen; the specimen must reach beyond what it lights. */
+struct sr_gonio_beam {
+    double x0, x1, y0, y1;           // [m]
+    float theta_i, phi_i;            // [rad] where the light comes from
+    bool is_isotropic;               // averaged over all azimuths of the specimen; cells over 0 … pi of the difference
+    uint32_t theta_count, phi_count; // cells of the hemisphere, even in both angles
+    float lambda[SR_LAMBDA_COUNT];   // [nm]
+    uint32_t stream;                 // which random numbers
+};
+struct sr_gonio_scatter {
+    size_t cells;
+    const double *f, *f_error;                             // [1/sr] (theta * phi_count + phi) * SR_LAMBDA_COUNT
+    double reflected[SR_LAMBDA_COUNT], reflected_error[SR_LAMBDA_COUNT]; // [1] of what arrives, into the upper hemisphere
+    double transmitted[SR_LAMBDA_COUNT];                   // [1] into the lower one
+    double missed;                                         // [1] of the beam that met nothing
+};
+sr_status sr_gonio_scatter(const struct sr_gonio *g, const struct sr_gonio_beam *beam, struct sr_arena *arena, struct sr_gonio_scatter *out,
+                           struct sr_error *error);
+
 /* The film as an image: R G B, and with error bars SE.R SE.G SE.B, samples, and the auxiliary channels if it has them.
  * Luminance-like channels are in cd/m^2. */
 sr_status sr_render_image(const struct sr_film *film, bool with_error, bool is_replicated, struct sr_image **image, struct sr_error *error);

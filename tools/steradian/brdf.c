@@ -8,7 +8,7 @@
 #include <string.h>
 
 static const struct command *const parts[] = {&brdf_list,  &brdf_info, &brdf_show,    &brdf_eval, &brdf_reflectance,
-                                              &brdf_check, &brdf_fit,  &brdf_convert, &brdf_plot};
+                                              &brdf_check, &brdf_fit,  &brdf_convert, &brdf_plot, &brdf_measure};
 enum { PARTS = sizeof parts / sizeof parts[0] };
 
 static void print_help(FILE *out)

@@ -9,7 +9,7 @@
 
 /* One file each; a new one is its line in the list of brdf.c. Named "brdf eval" in messages. */
 extern const struct command brdf_list, brdf_show, brdf_info, brdf_eval, brdf_reflectance, brdf_check, brdf_fit,
-    brdf_convert, brdf_plot;
+    brdf_convert, brdf_plot, brdf_measure;
 
 /* The specimen of the words that are left after the options; the exit code of a mistake that has been told, or 0. */
 int brdf_read_specimen(const struct command *command, int argc, char **argv, struct sr_arena *arena,

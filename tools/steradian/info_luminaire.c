@@ -75,8 +75,9 @@ static sr_status plot(const char *path, const struct sr_photometry *p, const cha
         for (int k = 0; k < 2; ++k)
             y[k][i] = sr_photometry_intensity(p, 90 * k + (x[i] < 0 ? 180 : 0), fabs(x[i]));
     }
-    struct sr_plot_curve curves[] = {{.label = "C0 right, C180 left", .x = x, .y = y[0], .count = POINTS}, {.label = "C90 right, C270 left", .x = x, .y = y[1], .count = POINTS, .dash = SR_PLOT_DASHED}};
-    struct sr_plot_panel panel = {.kind = SR_PLOT_POLAR, .x = {.label = "γ", .unit = "°"}, .y = {.label = "I", .unit = "cd"}, .curves = curves, .curve_count = 2, .points_down = true};
+    bool is_axial = p->symmetry == SR_PHOTOMETRY_AXIAL;
+    struct sr_plot_curve curves[] = {{.label = is_axial ? "all C-planes" : "C0 right, C180 left", .x = x, .y = y[0], .count = POINTS}, {.label = "C90 right, C270 left", .x = x, .y = y[1], .count = POINTS, .dash = SR_PLOT_DASHED}};
+    struct sr_plot_panel panel = {.kind = SR_PLOT_POLAR, .x = {.label = "γ", .unit = "°"}, .y = {.label = "I", .unit = "cd"}, .curves = curves, .curve_count = is_axial ? 1 : 2, .points_down = true};
     struct sr_plot_figure figure = {.title = title, .width = 520, .height = 580, .panels = &panel, .panel_count = 1, .scale = 2};
     return sr_plot_write(&figure, path, error);
 }

@@ -87,10 +87,13 @@ int measure_balance(const struct measure_arguments *a, const struct sr_render_jo
 
 /* ---- goniophotometer ---- */
 
-static sr_status write_table(const char *path, const struct sr_intensity_table *t, struct sr_error *error)
+static sr_status write_table(const char *path, const char *scene, const struct sr_intensity_table *t, struct sr_error *error)
 {
     if (sr_path_has_ending(path, ".ies") || sr_path_has_ending(path, ".ldt")) {
-        struct sr_photometry p = {.symmetry = SR_PHOTOMETRY_ALL_PLANES, .c_count = t->c_count, .gamma_count = t->gamma_count, .c = t->c, .gamma = t->gamma,
+        char test[100];
+        snprintf(test, sizeof test, "computed, %llu paths", (unsigned long long)t->samples);
+        const struct sr_photometry_word words[] = {{"TEST", test}, {"TESTLAB", "steradian " SR_VERSION}, {"LUMINAIRE", scene}};
+        struct sr_photometry p = {.symmetry = t->c_count == 1 ? SR_PHOTOMETRY_AXIAL : SR_PHOTOMETRY_ALL_PLANES, .words = words, .word_count = 3, .c_count = t->c_count, .gamma_count = t->gamma_count, .c = t->c, .gamma = t->gamma,
                                   .candela = t->I, .lamp_count = 1, .lamp_flux = NAN, .note = ""};
         return sr_photometry_write(path, &p, error);
     }
@@ -124,7 +127,7 @@ sr_status measure_write_intensity(const struct measure_arguments *a, const struc
     if (!sr_path_has_ending(a->outfile, ".ies") && !sr_path_has_ending(a->outfile, ".ldt") && !sr_path_has_ending(a->outfile, ".csv"))
         return sr_fail(error, SR_ERROR_USAGE, "%s: the ending .ies, .ldt or .csv was expected for an intensity distribution", a->outfile);
     sr_status status = sr_measure_intensity(job, meter, &s, &arena, &t, error);
-    if (status == SR_OK && write_table(a->outfile, &t, error) == SR_OK && !a->quiet)
+    if (status == SR_OK && write_table(a->outfile, a->scene, &t, error) == SR_OK && !a->quiet)
         fprintf(stderr, "note: %u planes of %u angles of \"%s\" written to %s\n", t.c_count, t.gamma_count, sr_meter_common(meter)->name, a->outfile);
     sr_arena_free(&arena);
     return error->status ? error->status : status;

@@ -486,5 +486,7 @@ const struct sr_pbrt_directive sr_pbrt_annotations[] = {
     {"Option", SR_PBRT_IN_OPTIONS, read_option},
     {"Meter", SR_PBRT_IN_WORLD, read_meter},
     {"Name", SR_PBRT_IN_WORLD, read_name},
+    {"LightSource", SR_PBRT_IN_WORLD, read_light}, // of kinds that pbrt does not know
+    {"Camera", SR_PBRT_IN_OPTIONS, read_camera},   // the last one counts
     {NULL, 0, NULL},
 };
