@@ -90,6 +90,8 @@ struct sr_bsdf_model {
     X(dust)                                                                                                            \
     X(hapke)                                                                                                           \
     X(spectralon)                                                                                                      \
+    X(abg)                                                                                                             \
+    X(harvey)                                                                                                          \
     X(conductor)                                                                                                       \
     X(dielectric)                                                                                                      \
     X(microfacet)                                                                                                      \
@@ -103,6 +105,7 @@ struct sr_bsdf_model {
     X(microfacet_dielectric)                                                                                           \
     X(beckmann_dielectric)                                                                                             \
     X(ggx_conductor_ms)                                                                                                \
+    X(ggx_dielectric_ms)                                                                                               \
     X(thin_dielectric)                                                                                                 \
     X(coated_diffuse)                                                                                                  \
     X(coated_conductor)                                                                                                \
@@ -112,6 +115,7 @@ struct sr_bsdf_model {
     X(multilayer_dielectric)                                                                                           \
     X(measured)                                                                                                        \
     X(sheen)                                                                                                           \
+    X(sheen_ltc)                                                                                                       \
     X(disney)                                                                                                          \
     X(hair)                                                                                                            \
     X(principled)                                                                                                      \

@@ -19,24 +19,27 @@
  *
  * Light leaves on the whole sphere; z is the normal of the ribbon on which the hair is drawn, and only divides f. Limits:
  * not reciprocal (F and T know theta_o alone, scales tilt one side only, and f bears the ribbon's cosine); far field: light
- * leaves where it entered. From a colour c, sigma_a = (ln c / q)^2, q a fit over beta_n, for a head of hair of it. */
+ * leaves where it entered. From a colour c, sigma_a = (ln c / q)^2, q a fit over beta_n, for a head of hair of it. From what hair
+ * is dyed with by nature, sigma_a = eumelanin s_e + pheomelanin s_p per radius: s_e = (.419, .697, 1.37), s_p = (.187, .4, 1.05)
+ * for red, green, blue (d'Eon et al. 2011), taken at 610, 545 and 465 nm, and exp of a parabola in lambda through these. */
 #include "bsdf/microfacet.h"
 
 #define LOBES 4 // R, TT, TRT, the rest
 
-enum { FROM_SIGMA_A, FROM_REFLECTANCE };
+enum { FROM_SIGMA_A, FROM_REFLECTANCE, FROM_MELANIN };
 
 struct hair {
-    sr_spectrum sigma_a;     // [1/radius]
-    sr_spectrum reflectance; // [1]
+    sr_spectrum sigma_a;          // [1/radius]
+    sr_spectrum reflectance;      // [1]
     float h, eta, beta_m, beta_n; // [1]
-    float alpha;             // [deg]
+    float eumelanin, pheomelanin; // [1] concentrations
+    float alpha;                  // [deg]
     int32_t colour_from;
     // derived
-    sr_spectrum sigma;           // [1/radius]
-    float v[LOBES], s, s_norm;   // s_norm: share of the logistic that lies within one turn
+    sr_spectrum sigma;         // [1/radius]
+    float v[LOBES], s, s_norm; // s_norm: share of the logistic that lies within one turn
     float sin_tilt[3], cos_tilt[3];
-    float gamma_o;               // [rad]
+    float gamma_o; // [rad]
 };
 _Static_assert(sizeof(struct hair) <= SR_BSDF_SIZE, "too large for a BSDF at a point");
 
@@ -44,12 +47,18 @@ static const struct sr_param params[] = {
     {SR_PARAM_UNBOUNDED, "sigma_a", "1/radius", 0, 20, 0.3, offsetof(struct hair, sigma_a), "absorption inside"},
     {SR_PARAM_ALBEDO, "reflectance", "1", 0, 1, 0.5, offsetof(struct hair, reflectance),
      "colour of a head of such hair, where it is to give sigma_a"},
-    {SR_PARAM_ENUM, "colour_from", "1", 0, 1, FROM_SIGMA_A, offsetof(struct hair, colour_from), "sigma_a|reflectance"},
+    {SR_PARAM_ENUM, "colour_from", "1", 0, 2, FROM_SIGMA_A, offsetof(struct hair, colour_from),
+     "sigma_a|reflectance|melanin"},
+    {SR_PARAM_FLOAT, "eumelanin", "1", 0, 8, 1.3, offsetof(struct hair, eumelanin),
+     "concentration of what makes hair brown and black: 0.3 blond, 1.3 brown, 8 black"},
+    {SR_PARAM_FLOAT, "pheomelanin", "1", 0, 8, 0, offsetof(struct hair, pheomelanin),
+     "concentration of what makes hair yellow and red"},
     {SR_PARAM_FLOAT, "h", "1", -1, 1, 0, offsetof(struct hair, h), "offset from the axis, in radii"},
     {SR_PARAM_FLOAT, "eta", "1", 1.1, 2, 1.55, offsetof(struct hair, eta), "index of refraction"},
     {SR_PARAM_FLOAT, "beta_m", "1", 0.1, 1, 0.3, offsetof(struct hair, beta_m), "roughness along the hair"},
     {SR_PARAM_FLOAT, "beta_n", "1", 0.1, 1, 0.3, offsetof(struct hair, beta_n), "roughness around the hair"},
-    {SR_PARAM_FLOAT, "scale_tilt", "deg", 0, 10, 2, offsetof(struct hair, alpha), "tilt of the scales towards the root"},
+    {SR_PARAM_FLOAT, "scale_tilt", "deg", 0, 10, 2, offsetof(struct hair, alpha),
+     "tilt of the scales towards the root"},
     {0},
 };
 
@@ -62,10 +71,16 @@ static float power(float x, int n)
     return y;
 }
 
+/* Absorption per radius for concentrations of 1, between and beyond the three wavelengths at which it is known. */
+static float melanin(float lambda, float red, float green, float blue)
+{
+    float r = lambda - 610, g = lambda - 545, b = lambda - 465; // [nm]
+    return expf(logf(red) * g * b / (65 * 145) - logf(green) * r * b / (65 * 80) + logf(blue) * r * g / (145 * 80));
+}
+
 static void ready(void *self, const struct sr_bsdf_at *at)
 {
     struct hair *m = self;
-    (void)at;
     float b = m->beta_m, n = m->beta_n;
     m->v[0] = sr_sqr(0.726f * b + 0.812f * b * b + 3.7f * power(b, 20));
     m->v[1] = 0.25f * m->v[0];
@@ -80,9 +95,14 @@ static void ready(void *self, const struct sr_bsdf_at *at)
     m->gamma_o = asinf(sr_clamp(m->h, -1, 1));
     m->sigma = m->sigma_a;
     if (m->colour_from == FROM_REFLECTANCE) {
-        float n2 = n * n, q = 5.969f - 0.215f * n + 2.532f * n2 - 10.73f * n2 * n + 5.574f * n2 * n2 + 0.245f * n2 * n2 * n;
+        float n2 = n * n,
+              q = 5.969f - 0.215f * n + 2.532f * n2 - 10.73f * n2 * n + 5.574f * n2 * n2 + 0.245f * n2 * n2 * n;
         for (int i = 0; i < SR_LAMBDA_COUNT; ++i)
             m->sigma[i] = sr_sqr(logf(sr_max(m->reflectance[i], 1e-4f)) / q);
+    } else if (m->colour_from == FROM_MELANIN) {
+        for (int i = 0; i < SR_LAMBDA_COUNT; ++i)
+            m->sigma[i] = m->eumelanin * melanin(at->lambda[i], 0.419f, 0.697f, 1.37f) +
+                          m->pheomelanin * melanin(at->lambda[i], 0.187f, 0.4f, 1.05f);
     }
 }
 

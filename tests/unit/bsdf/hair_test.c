@@ -108,3 +108,27 @@ TEST(hair_takes_its_absorption_from_a_colour)
     struct sr_bsdf b = specimen("hair", "sigma_a", pow(log(0.2) / q, 2), NULL);
     EXPECT_RELATIVE(a.model->albedo(a.data, direction(30, 20))[0], b.model->albedo(b.data, direction(30, 20))[0], 1e-6);
 }
+
+/* Melanin is absorption: what d'Eon et al. give for red, green and blue, at three wavelengths, and monotonic between. */
+TEST(hair_is_dyed_by_melanin)
+{
+    static const double nm[3] = {610, 545, 465}, eu[3] = {.419, .697, 1.37}, pheo[3] = {.187, .4, 1.05};
+    sr_vec3 wo = direction(40, 70), wi = direction(130, 200);
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) {
+            double e = k == 1 ? 0 : 1.3, p = k == 0 ? 0 : 0.8;
+            struct sr_bsdf dyed =
+                specimen("hair", "colour_from", 2.0, "eumelanin", e, "pheomelanin", p, "h", 0.3, NULL);
+            struct sr_bsdf given = specimen("hair", "sigma_a", e * eu[i] + p * pheo[i], "h", 0.3, NULL);
+            specimen_ready(&dyed, (float)nm[i]);
+            EXPECT_RELATIVE(sr_bsdf_f(&dyed, wo, wi, SR_RADIANCE)[0], sr_bsdf_f(&given, wo, wi, SR_RADIANCE)[0], 1e-5);
+        }
+    struct sr_bsdf dyed = specimen("hair", "colour_from", 2.0, "h", 0.3, NULL);
+    double last = 0;
+    for (int nm_at = 380; nm_at <= 780; nm_at += 20) {
+        specimen_ready(&dyed, (float)nm_at);
+        double f = (double)sr_bsdf_f(&dyed, wo, wi, SR_RADIANCE)[0];
+        EXPECT(f > last);
+        last = f;
+    }
+}
