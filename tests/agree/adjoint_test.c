@@ -153,3 +153,30 @@ TEST(paths_from_both_ends_bring_the_same_caustic)
     printf("  path sees %.3f of it\n", missed / seen);
     EXPECT(missed < 0.95 * seen); // or there is no caustic in the picture
 }
+
+/* The scene for which bidirectional path tracing was shown first; pbrt's picture has standard errors of its own. */
+TEST(bidirectional_paths_agree_with_the_reference_of_veach_s_room)
+{
+    const char *path = test_reference_file("scenes/veach-bidir/scene-v4.ref.pbrt");
+    static const double mean[3] = {0.38358382, 0.35001176, 0.326257}, error_of_mean[3] = {0.00163, 0.000927, 0.000403}; // pbrt-v4, 256 samples
+    struct sr_import_options options = {.integrator = "bdpt"};
+    struct sr_import_result scene;
+    struct sr_error error = {0};
+    if (!import_scene(path, &options, &scene, &error))
+        test_fail(__FILE__, __LINE__, "%s", error.text);
+    struct sr_render_job job = job_of(&scene);
+    job.spp = job.replicates = 4;
+    struct sr_render_report report;
+    struct sr_film *film = render_or_fail(&job, &report);
+    for (int c = 0; c < 3; ++c) {
+        double w[3] = {0, 0, 0};
+        w[c] = 1;
+        struct sr_film_mean m = sr_film_region_mean(film, 0, 0, film->width, film->height, w);
+        double u = hypot(m.standard_error, error_of_mean[c]);
+        printf("  %c: %.5f +- %.5f, reference %.5f +- %.5f, t %.2f\n", "RGB"[c], m.mean, m.standard_error, mean[c], error_of_mean[c], (m.mean - mean[c]) / u);
+        EXPECT(sr_student_p_two_sided((m.mean - mean[c]) / u, fmax(3, m.degrees)) > 1e-6);
+        EXPECT(m.standard_error < 0.01 * m.mean);
+    }
+    sr_film_destroy(film);
+    sr_import_result_free(&scene);
+}
