@@ -136,7 +136,8 @@ const struct sr_bsdf_model sr_bsdf_coated_conductor = {
     .name = "coated_conductor",
     .title = "Metal under a dielectric coat",
     .source = "Y. Guo, M. Hasan & S. Zhao, Position-free Monte Carlo simulation for arbitrary layered BSDFs, 2018",
-    .limits = "f is a random walk: right in the mean; ends after max_depth events",
+    .limits = "f is a random walk: right in the mean, noisy where the coat is narrow one way and wide the other; ends "
+              "after max_depth events",
     .params = params,
     .size = sizeof(struct sr_bsdf_coated),
     .is_random = true,
