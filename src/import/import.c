@@ -59,6 +59,8 @@ static sr_status import(const char *path, const struct sr_import_options *option
     sr_status status = sr_pbrt_read(path, b.arena, log, &d, error);
     b.hash = d.hash;
     if (status == SR_OK)
+        status = sr_pbrt_uncertainties(&b);
+    if (status == SR_OK)
         status = describe(&b, &choice);
     if (status == SR_OK && d.shapes.count + d.instances.count == 0 && d.lights.count == 0)
         sr_log(log, SR_WARNING, "%s: the scene is empty", path);

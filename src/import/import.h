@@ -24,7 +24,16 @@ struct sr_import_options {
     int32_t pixel_bounds[4]; // [pixel]
     bool quick;              // for a first look: a quarter of the width, height and samples
     enum sr_units units;     // SR_UNITS_OF_SCENE: what the file says, or photometric
+    uint32_t shifted;        // number from 1 of the declared uncertainty whose parameter is shifted; 0: none
+    double shift;            // by so many standard uncertainties
     const char *integrator;  // NULL, or the estimator to use instead of the file's
+};
+
+/* A standard uncertainty that the file declares of one of its numbers: "#@ Uncertainty" (docs/guide/budget.md). */
+struct sr_declared_uncertainty {
+    const char *name;     // of what is uncertain
+    double value, u;      // in the unit of the parameter; of a spectrum or rgb the first number
+    bool is_rectangular;  // given as half the width of a rectangle: u = a / sqrt(3); else normal
 };
 
 /* Everything that a render needs; owned by the scene's arena but for the scene itself. */
@@ -40,6 +49,8 @@ struct sr_import_result {
     enum sr_units units; // SR_UNITS_PHOTOMETRIC or SR_UNITS_SI
     const struct sr_meter *meters; // of the file, in its order; each has a name
     uint32_t meter_count;
+    const struct sr_declared_uncertainty *uncertainties;
+    uint32_t uncertainty_count;
     uint64_t hash; // of all bytes that were read: scene files, meshes, images
     double read_s; // [s] reading and describing, without building
 };

@@ -17,6 +17,8 @@ static const char help[] =
     "Each reading is printed with its expanded uncertainty (95 %, Student), from independent replicates.\n"
     "\n"
     "  -m, --meter NAME       this meter only (may be repeated; default: all)\n"
+    "      --budget           the uncertainty budget of each meter: the spread of the replicates, and every\n"
+    "                         #@ Uncertainty of the scene, by measuring with its parameter shifted both ways\n"
     "      --list             the meters of the scene, without measuring\n"
     "      --quantity LIST    radiometric, photopic (default), scotopic, cones2, cones10, photon, par, or all\n"
     "      --spectrum LO:STEP:HI   also spectral readings at these wavelengths [nm]\n"
@@ -51,12 +53,13 @@ static const char help[] =
 
 enum {
     OPT_LIST = 256, OPT_QUANTITY, OPT_SPECTRUM, OPT_FWHM, OPT_BANDPASS, OPT_COLOUR, OPT_ERROR, OPT_TIME, OPT_SAMPLES, OPT_REPLICATES, OPT_ESTIMATOR,
-    OPT_SEED, OPT_THREADS, OPT_SAMPLER, OPT_LAMBDA, OPT_POINTS, OPT_RAYS, OPT_JSON, OPT_UNITS, OPT_BALANCE,
+    OPT_SEED, OPT_THREADS, OPT_SAMPLER, OPT_LAMBDA, OPT_POINTS, OPT_RAYS, OPT_JSON, OPT_UNITS, OPT_BALANCE, OPT_BUDGET,
 };
 
 static const struct option long_options[] = {
     {"meter", required_argument, NULL, 'm'},
     {"list", no_argument, NULL, OPT_LIST},
+    {"budget", no_argument, NULL, OPT_BUDGET},
     {"quantity", required_argument, NULL, OPT_QUANTITY},
     {"spectrum", required_argument, NULL, OPT_SPECTRUM},
     {"fwhm", required_argument, NULL, OPT_FWHM},
@@ -191,6 +194,9 @@ static int parse(int argc, char **argv, struct measure_arguments *a)
         case OPT_LIST:
             a->list = true;
             break;
+        case OPT_BUDGET:
+            a->budget = true;
+            break;
         case OPT_COLOUR:
             a->colour = true;
             break;
@@ -225,6 +231,9 @@ static int parse(int argc, char **argv, struct measure_arguments *a)
     if (optind + 1 != argc)
         return command_usage(&command_measure, optind == argc ? "a scene file was expected" : "one scene file was expected, there are %d", argc - optind);
     a->scene = argv[optind];
+    if (a->budget && (a->input != MEASURE_METERS || a->outfile || a->balance || a->has_spectrum || a->colour || a->settings.error > 0 || a->settings.time_s > 0 ||
+                      strcmp(a->scene, "-") == 0))
+        return command_usage(&command_measure, "--budget measures the meters of a scene file by --samples: without --points, --rays, --balance, --spectrum, --colour, --error, --time, -o");
     if (a->input != MEASURE_METERS && strcmp(a->scene, "-") == 0)
         return command_usage(&command_measure, "standard input cannot hold the scene and what is to be measured: expected a scene file");
     if (a->input != MEASURE_METERS && (a->meter_count || a->outfile || a->has_spectrum || a->colour || a->list))
@@ -262,7 +271,7 @@ sr_status measure_spectrometer(const struct measure_arguments *a, const struct s
 
 /* ---- all together ---- */
 
-static struct sr_render_job make_job(const struct measure_arguments *a, const struct sr_import_result *scene)
+struct sr_render_job measure_job(const struct measure_arguments *a, const struct sr_import_result *scene)
 {
     return (struct sr_render_job){
         .scene = scene->scene,
@@ -348,7 +357,7 @@ static sr_status write_map(const struct measure_arguments *a, const struct sr_re
 static int measure_scene(const struct measure_arguments *a, const struct sr_import_result *scene, const bool *chosen)
 {
     struct sr_error error = {0};
-    struct sr_render_job job = make_job(a, scene);
+    struct sr_render_job job = measure_job(a, scene);
     struct sr_arena arena = {0};
     json_t *list = json_array();
     int width = 0, maps = 0;
@@ -424,11 +433,11 @@ static int run(int argc, char **argv)
     if (!chosen)
         code = SR_ERROR_RESOURCE;
     else if (a.input != MEASURE_METERS) {
-        struct sr_render_job job = make_job(&a, &scene);
+        struct sr_render_job job = measure_job(&a, &scene);
         render_catch_interrupts();
         code = measure_stream(&a, &job);
     } else if (a.balance) {
-        struct sr_render_job job = make_job(&a, &scene);
+        struct sr_render_job job = measure_job(&a, &scene);
         render_catch_interrupts();
         code = measure_balance(&a, &job);
     } else if (scene.meter_count == 0) {
@@ -440,7 +449,7 @@ static int run(int argc, char **argv)
         code = list_meters(&a, &scene);
     } else if ((code = choose(&a, &scene, chosen)) == 0) {
         render_catch_interrupts();
-        code = measure_scene(&a, &scene, chosen);
+        code = a.budget ? measure_budget(&a, &scene, chosen) : measure_scene(&a, &scene, chosen);
     }
     free(chosen);
     sr_import_result_free(&scene);

@@ -23,7 +23,7 @@ struct measure_arguments {
     struct sr_spectrometer spectrometer; // asked for on the command line
     double spectrum[3], fwhm;      // [nm]
     enum sr_meter_bandpass bandpass;
-    bool has_spectrum, colour, has_seed, list, balance, json, quiet;
+    bool has_spectrum, colour, has_seed, list, balance, budget, json, quiet;
     uint64_t seed, threads;
     const char *sampler;
 };
@@ -41,6 +41,12 @@ json_t *measure_json(const struct measure_arguments *a, const struct sr_meter *m
 /* measure_adjoint.c: what particles from the lights tell; an exit code, and the table of a meter of the far field to a->outfile */
 int measure_balance(const struct measure_arguments *a, const struct sr_render_job *job);
 sr_status measure_write_intensity(const struct measure_arguments *a, const struct sr_render_job *job, const struct sr_meter *meter, struct sr_error *error);
+
+/* measure_budget.c: what contributes to the uncertainty of each chosen meter; the exit code */
+int measure_budget(const struct measure_arguments *a, const struct sr_import_result *scene, const bool *chosen);
+
+/* measure.c */
+struct sr_render_job measure_job(const struct measure_arguments *a, const struct sr_import_result *scene);
 
 /* measure_stream.c: lines from standard input; the exit code */
 int measure_stream(const struct measure_arguments *a, const struct sr_render_job *job);

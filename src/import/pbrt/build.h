@@ -109,6 +109,9 @@ sr_status sr_pbrt_material(struct sr_pbrt_build *b, const struct sr_pbrt_materia
                            const struct sr_material **out);
 sr_status sr_pbrt_materials(struct sr_pbrt_build *b, const struct sr_pbrt_param *p, struct sr_slice *out);
 
+/* uncertainties.c: those that the file declares; the one that the options name is added to its parameter, before anything is built. */
+sr_status sr_pbrt_uncertainties(struct sr_pbrt_build *b);
+
 /* lights.c and shapes.c add to the scene; settings.c fills the rest of the result. */
 sr_status sr_pbrt_build_lights(struct sr_pbrt_build *b);
 sr_status sr_pbrt_emission(struct sr_pbrt_build *b, uint32_t area_light1, float area,

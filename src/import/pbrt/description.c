@@ -38,7 +38,8 @@ void sr_pbrt_description_free(struct sr_pbrt_description *d)
     struct sr_array *arrays[] = {&d->files,           &d->options,  &d->transforms, &d->materials,
                                  &d->named_materials, &d->textures, &d->media,      &d->lights,
                                  &d->area_lights,     &d->shapes,   &d->objects,    &d->instances,
-                                 &d->meters};
+                                 &d->meters,
+                                 &d->uncertainties};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; ++i)
         sr_array_free(arrays[i]);
     struct sr_pbrt_names *names[] = {&d->object_names, &d->material_names, &d->medium_names, &d->float_textures,

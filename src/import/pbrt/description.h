@@ -154,6 +154,7 @@ struct sr_pbrt_description {
     struct sr_array objects;         // struct sr_pbrt_object
     struct sr_array instances;       // struct sr_pbrt_instance
     struct sr_array meters;          // struct sr_pbrt_entity
+    struct sr_array uncertainties;   // struct sr_pbrt_entity
 
     struct sr_pbrt_names object_names, material_names, medium_names, float_textures, spectrum_textures;
 

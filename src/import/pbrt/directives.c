@@ -482,7 +482,14 @@ static sr_status read_name(struct sr_pbrt_parser *p)
     return status;
 }
 
+static sr_status read_uncertainty(struct sr_pbrt_parser *p)
+{
+    struct sr_pbrt_entity *declared = sr_array_push(&p->d->uncertainties, sizeof *declared);
+    return declared ? sr_pbrt_read_entity(p, "a name for what is uncertain", no_defaults, declared) : no_memory(p);
+}
+
 const struct sr_pbrt_directive sr_pbrt_annotations[] = {
+    {"Uncertainty", SR_PBRT_ANYWHERE, read_uncertainty},
     {"Option", SR_PBRT_IN_OPTIONS, read_option},
     {"Meter", SR_PBRT_IN_WORLD, read_meter},
     {"Name", SR_PBRT_IN_WORLD, read_name},
