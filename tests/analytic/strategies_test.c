@@ -276,6 +276,37 @@ TEST(strategies_agree_on_images_of_the_sky_and_on_points)
     agree("sky+point", text, 3, 1024);
 }
 
+/* ---- variances ---- */
+
+/* Relative standard deviation of one sample of a receiver that looks straight at a disk of half angle 10 deg. */
+static double deviation(const char *strategies)
+{
+    struct world w = world_of("Integrator \"estimator\" \"string strategies\" \"%s\" \"integer maxdepth\" 0\nWorldBegin\n" BLACK GLOW
+                              "ReverseOrientation Shape \"disk\" \"float height\" 1 \"float radius\" 0.176326980708\n", strategies);
+    struct reading m = {.receiver = {.x = {.n = {0, 0, 1}, .ns = {0, 0, 1}}, .frame = sr_frame_from_z((sr_vec3){0, 0, 1}), .response = cosine_response,
+                                     .sample = cosine_sample, .pdf = cosine_pdf, .is_upper = true}};
+    struct sr_worker worker = {0};
+    struct sr_tally tally = {0};
+    for (uint32_t i = 0; i < samples(65536); ++i) {
+        struct sr_sampler sampler = sr_sampler_start(SR_SAMPLER_INDEPENDENT, 1, 0, 0, 0, i);
+        struct sr_wavelengths lambda = sr_wavelengths_sample(w.job.lambda, 0.5f); // the same spectrum for all
+        sr_spectrum E = w.job.integrator.model->gather(w.job.integrator.self, w.job.scene, &m.receiver, &sampler, &lambda, &worker);
+        sr_tally_add(&tally, (double)sr_spectrum_to_xyz(E, &lambda).y);
+    }
+    world_free(&w);
+    return sqrt(sr_tally_variance(&tally)) / tally.mean;
+}
+
+TEST(strategies_have_the_variances_that_follow_from_their_densities)
+{
+    // tolerance: 65536 samples, of which a share of 1.5 or 3 % finds the disk: 4.9 standard errors and more
+    double wide = is_slow_build() ? 8 : 1;
+    EXPECT_RELATIVE(deviation("uniform-hemisphere"), 8.0513559912, 0.1 * wide);
+    EXPECT_RELATIVE(deviation("cosine-hemisphere"), 5.6712818196, 0.07 * wide);
+    EXPECT_RELATIVE(deviation("uniform-area"), 0.0176778085, 0.02 * wide);
+    EXPECT_RELATIVE(deviation("light-area"), 0.0176778085, 0.02 * wide);
+}
+
 /* ---- what a set cannot see is told ---- */
 
 static const char *blindness(int set, const char *content)
