@@ -114,20 +114,18 @@ def passes(build, test):
     names = [word for word in rest if not word.startswith("[")]
     environment = dict(os.environ, **({"STERADIAN_TEST_ROWS": rows[0]} if rows else {}))
     out = subprocess.run([build / "tests" / f"test_{folder}", *names], capture_output=True, text=True, env=environment)
-    if "0 test(s) run" in out.stderr + out.stdout:
-        return None
     return out.returncode == 0
 
 
 def hunt(root, build, names):
     copy = build / "source"
     shutil.rmtree(copy, ignore_errors=True)
-    shutil.copytree(root, copy, ignore=lambda folder, entries: [e for e in entries if e == ".git" or e == "out" or e.startswith("build")])
-    subprocess.run(["cmake", "-S", copy, "-B", build, "-DCMAKE_BUILD_TYPE=RelWithDebInfo", "-DSTERADIAN_LTO=OFF"], check=True, stdout=subprocess.DEVNULL)
+    shutil.copytree(root, copy, ignore=lambda folder, entries: [e for e in entries if pathlib.Path(folder) == root and (e in (".git", "out") or e.startswith("build"))])
+    subprocess.run(["cmake", "-S", copy, "-B", build, "-G", "Ninja" if shutil.which("ninja") else "Unix Makefiles", "-DCMAKE_BUILD_TYPE=Release", "-DSTERADIAN_LTO=OFF"], check=True, stdout=subprocess.DEVNULL)
     caught, hunted = 0, [m for m in MUTANTS if not names or any(n in m.name for n in names)]
     for test in sorted({m.test for m in hunted}):
         if passes(build, test) is not True:
-            sys.exit(f"{test}: does not pass without any mutant")
+            sys.exit(f"{test}: does not pass without any mutant (or does not compile)")
     for m in hunted:
         file, begin = copy / "src" / m.file, time.time()
         text = file.read_text()
