@@ -71,9 +71,9 @@ TEST(what_is_not_supported_says_so_and_what_is)
         "dielectric, thindielectric, coateddiffuse, coatedconductor, mix, interface, and the models of 'steradian "
         "brdf list'");
     expect_error("WorldBegin\nLightSource \"projection\"",
-                 "2:1: LightSource \"projection\" is not supported yet; supported: point, spot, distant, infinite");
+                 "2:1: LightSource \"projection\" is not supported yet; supported: point, spot, ies, distant, infinite");
     expect_error("Camera \"realistic\"\nWorldBegin",
-                 "1:1: Camera \"realistic\" is not supported yet; supported: perspective, orthographic, spherical");
+                 "1:1: Camera \"realistic\" is not supported yet; supported: perspective, orthographic, spherical, fisheye");
     expect_error("Film \"gbuffer\"\nWorldBegin", "1:1: Film \"gbuffer\" is not supported yet; supported: rgb");
     expect_error("WorldBegin\nMediumInterface \"fog\" \"\"\n" BALL,
                  "2:1: MediumInterface \"fog\": participating media are not supported yet");

@@ -421,3 +421,23 @@ TEST(near_bodies_hide_far_ones)
         EXPECT(is_hidden);
     }
 }
+
+TEST(lamps_hang_and_maps_without_frames_keep_their_proportions)
+{
+    struct sr_plot_panel two[] = {
+        {.kind = SR_PLOT_POLAR, .x = {.label = "γ", .unit = "°"}, .y = {.label = "I", .unit = "cd"}, .curves = lobes, .curve_count = 2, .points_down = true},
+        {.kind = SR_PLOT_MAP, .values = values, .rows = ROWS, .columns = COLUMNS, .has_no_frame = true, .has_contours = true, .z = {.label = "L_{v}", .unit = "cd/m^{2}"}},
+    };
+    struct sr_plot_figure figure = {.panels = two, .panel_count = 2};
+    struct sr_plot_check check;
+    size_t size, plain;
+    char *data = encoded(&figure, SR_PLOT_SVG, &size, &check);
+    EXPECT(check.texts > 10);
+    if (check.outside || check.overlaps)
+        test_fail(__FILE__, __LINE__, "%s", check.offender);
+    sr_free(data);
+    two[1].has_contours = false; // they are drawn
+    data = encoded(&figure, SR_PLOT_SVG, &plain, &check);
+    EXPECT(plain < size);
+    sr_free(data);
+}
