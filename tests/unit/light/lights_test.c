@@ -113,6 +113,41 @@ TEST(probabilities_add_up_to_1_less_the_walks_that_end_in_the_dark)
         }
 }
 
+TEST(lights_are_picked_in_proportion_to_their_area)
+{
+    static const uint32_t counts[] = {1, 2, 31, 32, 33, 100, 300};
+    for (int k = 0; k < 7; ++k) {
+        uint32_t n = counts[k];
+        const struct sr_light *lights = mixed_lights(n, (uint64_t)k, 1, 0.1f, false);
+        struct sr_lights l = build(lights, n, SR_LIGHTS_BVH);
+        struct sr_point x = {.p = {1, 2, 3}};
+        double total = 0, sum = 0;
+        for (uint32_t i = 0; i < n; ++i) {
+            total += lights[i].model == &sr_light_area ? (double)((const struct sr_light_area *)lights[i].self)->area : 0;
+            sum += (double)sr_lights_pmf_by_area(&l, i);
+        }
+        enum { DRAWS = 100000 };
+        double *seen = sr_arena_alloc(&scenery_arena, n * sizeof *seen), *expected = sr_arena_alloc(&scenery_arena, n * sizeof *expected);
+        struct sr_rng rng = sr_rng_seed(11, (uint64_t)k);
+        for (int d = 0; d < DRAWS; ++d) {
+            uint32_t index;
+            float pmf;
+            if (!sr_lights_pick_by_area(&l, &x, sr_rng_float(&rng), &index, &pmf)) {
+                EXPECT(total == 0);
+                continue;
+            }
+            EXPECT(pmf == sr_lights_pmf_by_area(&l, index));
+            ++seen[index];
+        }
+        for (uint32_t i = 0; i < n; ++i)
+            expected[i] = DRAWS * (double)sr_lights_pmf_by_area(&l, i);
+        if (total > 0) {
+            EXPECT_NEAR(sum, 1, 1e-5);
+            EXPECT_CHI2(seen, expected, n);
+        }
+    }
+}
+
 /* where every light reaches everything no walk ends in the dark */
 TEST(probabilities_of_points_add_up_to_1)
 {

@@ -281,6 +281,22 @@ TEST(sampling_by_area_is_uniform_in_the_right_measure)
     }
 }
 
+TEST(the_density_by_area_is_that_of_the_samples)
+{
+    for (int k = 0; k < zoo_count; ++k) {
+        struct sr_shape s = zoo(k, then(move(1, 2, 3), sr_transform_scale((sr_vec3){2, 0.7f, 1.1f})));
+        struct sr_rng rng = sr_rng_seed(34, (uint64_t)k);
+        for (int i = 0; i < 2000; ++i) {
+            struct sr_shape_sample y;
+            EXPECT(s.model->sample(s.self, 0, NULL, (sr_vec2){uniform(&rng), uniform(&rng)}, &y));
+            struct sr_point there = {.p = y.p, .n = y.n};
+            float pdf = s.model->area_pdf ? s.model->area_pdf(s.self, 0, &there) : 1 / s.model->area(s.self, 0);
+            if (!(fabsf(pdf / y.pdf - 1) < 2e-3f))
+                test_fail(__FILE__, __LINE__, "shape %d: density %g of a sample drawn with %g", k, (double)pdf, (double)y.pdf);
+        }
+    }
+}
+
 /* uv of samples by area, where the map from area to uv is known */
 TEST(samples_fill_uv_evenly)
 {
