@@ -99,7 +99,7 @@ static double energy(double alpha, double z, double eta)
     return sum;
 }
 
-/* z = alpha p / (1 + alpha - p) with p = q or, finer at the horizon, q^2 */
+/* z = alpha p / (1 + alpha - p) with p = q or, finer at the horizon, q^(3/2) */
 static double cosine_of(double p, double alpha)
 {
     return fmax(alpha * p / (1 + alpha - p), 1e-4 * alpha);
@@ -109,7 +109,7 @@ static double cosine_of(double p, double alpha)
 static void row(double alpha, double eta, int columns, double scale, const char *end)
 {
     for (int j = 0; j < columns; ++j) {
-        double q = (double)j / (columns - 1), z = cosine_of(eta > 0 ? q * q : q, alpha);
+        double q = (double)j / (columns - 1), z = cosine_of(eta > 0 ? q * sqrt(q) : q, alpha);
         printf("%s%ld%s",
                j % 16 ? ""
                : j    ? "\n     "
@@ -144,7 +144,7 @@ static void metal(void)
 
 static void glass(void)
 {
-    enum { INDICES = 12, ROWS = 16, COLUMNS = 24 };
+    enum { INDICES = 12, ROWS = 16, COLUMNS = 32 };
     lines = 96;
     panels = 8;
     printf("/* SPDX-License-Identifier: MIT */\n"
@@ -156,7 +156,7 @@ static void glass(void)
            " * First 0: from the thin side, 1: from the dense one; second k: the larger index over the smaller, 1.1 "
            "(3 / 1.1)^(k / 11);\n"
            " * row i: alpha = (i / 15)^2 (row 0: its limit, 1e-4); column j: z = alpha p / (1 + alpha - p), p = (j / "
-           "23)^2 (column 0: its limit).\n"
+           "31)^(3 / 2) (column 0: its limit).\n"
            " * Written by scripts/ggx_energy_table.c, whose head tells how. */\n"
            "#ifndef SR_BSDF_GGX_GLASS_ENERGY_H\n#define SR_BSDF_GGX_GLASS_ENERGY_H\n\n#include <stdint.h>\n\n"
            "enum { GLASS_INDICES = %d, GLASS_ROWS = %d, GLASS_COLUMNS = %d };\n// clang-format off\n"

@@ -51,7 +51,7 @@ static int cubic(float x, int n, float w[4])
 static float lost(const struct ggx_dielectric_ms *m, float z, int side)
 {
     z = sr_min(fabsf(z), 1);
-    float w[4], where = sqrtf(z * (1 + m->alpha) / (z + m->alpha)) * (GLASS_COLUMNS - 1);
+    float w[4], where = powf(z * (1 + m->alpha) / (z + m->alpha), 2.0f / 3) * (GLASS_COLUMNS - 1);
     const float *L = &m->lost[side][cubic(where, GLASS_COLUMNS, w)];
     return sr_clamp(w[0] * L[0] + w[1] * L[1] + w[2] * L[2] + w[3] * L[3], 0, 1);
 }

@@ -85,7 +85,7 @@ TEST(ground_glass_returns_all_light)
                 E += albedo_by_facets(&b.one, b.wo, side, n, a) + hemisphere_integral(beyond_integrand, &b, side, 16);
             worst = fmax(worst, fabs(E - 1));
         }
-    EXPECT(worst < 1.2e-2);
+    EXPECT(worst < 4e-3);
     struct beyond b = beyond(1.5, 0.5, 60, true);
     double R = albedo_by_facets(&b.one, b.wo, 1, 1.5, 0.5) + hemisphere_integral(beyond_integrand, &b, -1, 16);
     EXPECT_SAMPLES(&b.all, b.wo, 1, R);
@@ -102,6 +102,6 @@ TEST(glass_bounces_carry_what_single_events_lose)
         struct beyond b = beyond(1.5, 0.5, theta[k / 2], k & 1);
         double carried =
             hemisphere_integral(beyond_integrand, &b, 1, 16) + hemisphere_integral(beyond_integrand, &b, -1, 16);
-        EXPECT_NEAR(carried, 1 - (k & 1 ? inside : outside)[k / 2], 1e-3);
+        EXPECT_NEAR(carried, 1 - (k & 1 ? inside : outside)[k / 2], 6e-4);
     }
 }
