@@ -13,6 +13,14 @@
  * own choice. A uniform sky is never drawn at all, for the same reason. Estimators without such a choice must not use it. */
 #include "light/emission.h"
 
+/* What a texel radiates: scale times sigmoid times white. */
+struct cell {
+    struct sr_sigmoid sigmoid;
+    float scale; // [1]
+};
+
+enum { MOST_CELLS = 1 << 22 }; // 64 MiB
+
 struct infinite {
     struct sr_light_common common;
     struct sr_spd L;
@@ -20,10 +28,13 @@ struct infinite {
     const char *filename;
     // derived
     float factor;                     // of the texels' illuminant spectra
+    const struct sr_table *white;     // of those
+    const struct cell *cells;         // one a texel; NULL: too many
     struct sr_piecewise2 density;     // over the square
     float to_light[3][3];             // world to light
     sr_vec3 columns[3];               // light to world
     float determinant;                // of to_light: a transform that is no rotation squeezes solid angles
+    bool is_rotation;                 // or a mirror
     float luminance, choice;          // [cd/m^2] mean over the sphere
     sr_vec3 centre;                   // of the scene's sphere [m]
     float radius;                     // [m]
@@ -53,6 +64,10 @@ static void set_directions(struct infinite *m)
     }
     m->determinant = fabsf(a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
                            a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]));
+    m->is_rotation = true;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j <= i; ++j)
+            m->is_rotation &= fabsf(sr_dot(m->columns[i], m->columns[j]) - (float)(i == j)) < 1e-6f;
 }
 
 // illuminance on the side of +z, were the factor 1 [lx]
@@ -69,6 +84,27 @@ static double upper_illuminance(const struct sr_texels *t)
                 sum += (double)cos_theta * (y_of_rgb[0] * (double)c.r + y_of_rgb[1] * (double)c.g + y_of_rgb[2] * (double)c.b);
         }
     return sum * 4 * (double)SR_PI / ((double)t->width * t->height);
+}
+
+static struct cell cell_of(const struct sr_texels *t, size_t i)
+{
+    struct sr_spd s = sr_spd_from_rgb_illuminant(t->space, sr_light_texel(t, (uint32_t)(i % t->width), (uint32_t)(i / t->width)));
+    return (struct cell){s.sigmoid, s.scale};
+}
+
+static sr_status build_cells(struct infinite *m, struct sr_arena *arena, struct sr_error *error)
+{
+    const struct sr_texels *t = &m->common.texels;
+    size_t n = (size_t)t->width * t->height;
+    if (n > MOST_CELLS)
+        return SR_OK;
+    struct cell *cells = sr_arena_alloc(arena, n * sizeof *cells);
+    if (!cells)
+        return sr_fail(error, SR_ERROR_RESOURCE, "no memory for the spectra of %s", m->filename);
+    for (size_t i = 0; i < n; ++i)
+        cells[i] = cell_of(t, i);
+    m->cells = cells;
+    return SR_OK;
 }
 
 static sr_status build_density(struct infinite *m, struct sr_arena *arena, struct sr_error *error)
@@ -122,8 +158,9 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
         factor *= (double)m->illuminance / given;
     }
     m->factor = (float)factor;
+    m->white = sr_colour_space(t->space)->illuminant;
     m->luminance = (float)(factor * sr_colour_space(t->space)->illuminant_luminous_integral * sr_light_mean_luminance(t));
-    return build_density(m, arena, error);
+    return build_cells(m, arena, error) == SR_OK ? build_density(m, arena, error) : error->status;
 }
 
 static void place(void *self, sr_vec3 scene_centre, float scene_radius)
@@ -133,31 +170,25 @@ static void place(void *self, sr_vec3 scene_centre, float scene_radius)
     m->radius = scene_radius;
 }
 
-// direction in the world to the square; *jacobian: solid angle of the image over that of the world
+// unit direction in the world to the square; *jacobian: solid angle of the image over that of the world
 static sr_vec2 square(const struct infinite *m, sr_vec3 wi, float *jacobian)
 {
     const float(*a)[3] = (const float(*)[3])m->to_light;
     sr_vec3 d = {a[0][0] * wi.x + a[0][1] * wi.y + a[0][2] * wi.z, a[1][0] * wi.x + a[1][1] * wi.y + a[1][2] * wi.z,
                  a[2][0] * wi.x + a[2][1] * wi.y + a[2][2] * wi.z};
+    *jacobian = 1;
+    if (SR_LIKELY(m->is_rotation))
+        return sr_equal_area_sphere_to_square(d);
     float inverse_length = 1 / sr_length(d);
     *jacobian = m->determinant * inverse_length * inverse_length * inverse_length;
     return sr_equal_area_sphere_to_square(sr_scale(inverse_length, d));
 }
 
-static uint32_t texel_index(float u, uint32_t n)
+static sr_spectrum image_Le(const struct infinite *m, size_t i, const struct sr_wavelengths *w)
 {
-    float i = u * (float)n;
-    return i > 0 ? (i < (float)n ? (uint32_t)i : n - 1) : 0;
-}
-
-static sr_spectrum image_Le(const struct infinite *m, sr_vec2 p, const struct sr_wavelengths *w)
-{
-    const struct sr_texels *t = &m->common.texels;
-    struct sr_rgb c = sr_light_texel(t, texel_index(p.x, t->width), texel_index(p.y, t->height));
-    if (c.r + c.g + c.b <= 0)
-        return SR_BLACK;
-    struct sr_spd s = sr_spd_from_rgb_illuminant(t->space, c);
-    return sr_spd_along(&s, w) * m->factor;
+    struct cell c = m->cells ? m->cells[i] : cell_of(&m->common.texels, i);
+    struct sr_spd s = {.kind = SR_SPD_ILLUMINANT, .scale = c.scale * m->factor, .sigmoid = c.sigmoid, .table = m->white};
+    return sr_spd_along(&s, w);
 }
 
 static sr_spectrum Le(const void *self, const struct sr_point *there, sr_vec3 w, const struct sr_wavelengths *wavelengths)
@@ -167,7 +198,7 @@ static sr_spectrum Le(const void *self, const struct sr_point *there, sr_vec3 w,
     if (!is_image(m))
         return sr_spd_along(&m->L, wavelengths);
     float jacobian;
-    return image_Le(m, square(m, sr_neg(w), &jacobian), wavelengths);
+    return image_Le(m, sr_piecewise2_cell(&m->density, square(m, sr_neg(w), &jacobian)), wavelengths);
 }
 
 static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
@@ -182,10 +213,13 @@ static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u
         return false;
     sr_vec3 d = sr_equal_area_square_to_sphere(p);
     sr_vec3 wi = sr_add(sr_add(sr_scale(d.x, m->columns[0]), sr_scale(d.y, m->columns[1])), sr_scale(d.z, m->columns[2]));
-    // |A d| = 1 / |A^-1 wi| for the unit vector wi along A d
-    float length = sr_length(wi);
-    float jacobian = m->determinant * length * length * length;
-    *s = (struct sr_light_sample){.L = image_Le(m, p, w), .wi = sr_scale(1 / length, wi), .distance = INFINITY,
+    float jacobian = 1;
+    if (SR_UNLIKELY(!m->is_rotation)) { // |A d| = 1 / |A^-1 wi| for the unit vector wi along A d
+        float length = sr_length(wi);
+        jacobian = m->determinant * length * length * length;
+        wi = sr_scale(1 / length, wi);
+    }
+    *s = (struct sr_light_sample){.L = image_Le(m, sr_piecewise2_cell(&m->density, p), w), .wi = wi, .distance = INFINITY,
                                   .pdf = pdf * jacobian / (4 * SR_PI)};
     return !sr_spectrum_is_black(s->L);
 }
@@ -208,9 +242,9 @@ static sr_spectrum Le_pdf(const void *self, sr_vec3 wi, const struct sr_waveleng
     if (!is_image(m))
         return sr_spd_along(&m->L, w);
     float jacobian;
-    sr_vec2 p = square(m, wi, &jacobian);
-    *density = sr_piecewise2_pdf(&m->density, p) * jacobian / (4 * SR_PI);
-    return image_Le(m, p, w);
+    size_t i = sr_piecewise2_cell(&m->density, square(m, wi, &jacobian));
+    *density = m->density.density[i] * jacobian / (4 * SR_PI);
+    return image_Le(m, i, w);
 }
 
 /* Half of the rays leave as `sample` draws them, half evenly: no ray carries more than twice the mean flux, and none that

@@ -233,9 +233,9 @@ struct sr_piecewise1 {
     uint32_t count;
     float lo, hi;
     double integral;
-    float *f;   // count values
-    float *cdf; // count + 1 values
+    float *cdf;      // count + 1 values
     float per_unit;  // cells [1/length of the interval's unit]
+    float width;     // of a cell
     uint16_t *guide; // count + 2 cells: where to look for u between guide[i] and guide[i + 2], i = floor(count u); or NULL
 };
 bool sr_piecewise1_build(struct sr_arena *arena, const float *f, uint32_t count, float lo, float hi, struct sr_piecewise1 *d);
@@ -248,9 +248,20 @@ struct sr_piecewise2 {
     double integral;
     struct sr_piecewise1 marginal;     // over y
     struct sr_piecewise1 *conditional; // over x, one a row
+    float *density;                    // of each cell, row by row, exactly as drawn [1]
 };
 bool sr_piecewise2_build(struct sr_arena *arena, const float *f, uint32_t nx, uint32_t ny, struct sr_piecewise2 *d);
 sr_vec2 sr_piecewise2_sample(const struct sr_piecewise2 *d, sr_vec2 u, float *pdf);
-float sr_piecewise2_pdf(const struct sr_piecewise2 *d, sr_vec2 p);
+/* The cell, by its place in d->density, of a point in [0,1]^2. */
+static inline size_t sr_piecewise2_cell(const struct sr_piecewise2 *d, sr_vec2 p)
+{
+    float x = p.x * (float)d->nx, y = p.y * (float)d->ny;
+    size_t column = x > 0 ? (size_t)sr_min(x, (float)(d->nx - 1)) : 0, row = y > 0 ? (size_t)sr_min(y, (float)(d->ny - 1)) : 0;
+    return row * d->nx + column;
+}
+static inline float sr_piecewise2_pdf(const struct sr_piecewise2 *d, sr_vec2 p)
+{
+    return p.x >= 0 && p.x <= 1 && p.y >= 0 && p.y <= 1 ? d->density[sr_piecewise2_cell(d, p)] : 0;
+}
 
 #endif
