@@ -41,26 +41,20 @@ static sr_spectrum escaping(const struct sr_scene *scene, const struct sr_point 
     return L;
 }
 
-// light that reaches x straight from a light and leaves toward wo
-static sr_spectrum direct(const struct sr_scene *scene, const struct sr_point *x, const struct sr_frame *frame, const struct sr_bsdf *bsdf,
-                          sr_vec3 wo, sr_u4 u, const struct sr_wavelengths *w, struct sr_worker *worker)
+// light that reaches x straight from a light and leaves toward wo, were nothing in between; false: none
+static inline bool direct(const struct sr_lights *lights, const struct sr_point *x, const struct sr_frame *frame, const struct sr_bsdf *bsdf,
+                          sr_vec3 wo, sr_u4 u, const struct sr_wavelengths *w, struct sr_light_sample *l, sr_spectrum *L)
 {
-    const struct sr_lights *lights = sr_scene_lights(scene);
     uint32_t index;
     float pmf;
-    struct sr_light_sample l;
-    if (!sr_lights_pick(lights, x, u[2], &index, &pmf) || !sr_light_draw(lights->lights[index], x, (sr_vec2){u[0], u[1]}, w, &l))
-        return SR_BLACK;
+    if (!sr_lights_pick(lights, x, u[2], &index, &pmf) || !sr_light_draw(lights->lights[index], x, (sr_vec2){u[0], u[1]}, w, l))
+        return false;
 
-    sr_vec3 wi = sr_to_local(frame, l.wi);
-    float cos_theta_i = sr_abs_cos_theta(wi), pdf_bsdf;
+    sr_vec3 wi = sr_to_local(frame, l->wi);
+    float pdf = pmf * l->pdf, pdf_bsdf;
     sr_spectrum f = sr_bsdf_f_pdf(bsdf, wo, wi, SR_RADIANCE, &pdf_bsdf);
-    sr_spectrum fL = f * l.L * cos_theta_i;
-    if (!sr_spectrum_any(fL > 0.0f) || !sr_unoccluded(scene, x, &l, worker))
-        return SR_BLACK;
-
-    float pdf = pmf * l.pdf;
-    return fL * ((l.is_delta ? 1 : sr_mis_weight(pdf, pdf_bsdf)) / pdf);
+    *L = f * l->L * (sr_abs_cos_theta(wi) * (l->is_delta ? 1 : sr_mis_weight(pdf, pdf_bsdf)) / pdf);
+    return sr_spectrum_any(*L > 0.0f);
 }
 
 static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
@@ -148,13 +142,17 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
         if (wo.z == 0)
             return L;
 
-        // integral f L |cos theta_i| dwi, by the lights
-        if (sr_bsdf_is_diffuse(&bsdf) || sr_bsdf_lobes(&bsdf) & (SR_LOBE_DIFFUSE | SR_LOBE_GLOSSY))
-            L += beta * direct(scene, &x->point, &frame, &bsdf, wo, u_light, w, worker);
-
-        // integral f L |cos theta_i| dwi, by the surface: L(x, wi) is the next turn of this loop
+        // integral f L |cos theta_i| dwi, by the lights and by the surface: L(x, wi) is the next turn of this loop. Both are
+        // drawn before the shadow ray is traced, so that the processor need not wait for it
+        struct sr_light_sample l;
+        sr_spectrum L_direct;
+        bool is_lit = (sr_bsdf_is_diffuse(&bsdf) || sr_bsdf_lobes(&bsdf) & (SR_LOBE_DIFFUSE | SR_LOBE_GLOSSY)) &&
+                      direct(lights, &x->point, &frame, &bsdf, wo, u_light, w, &l, &L_direct);
         struct sr_bsdf_sample s;
-        if (!sr_bsdf_sample(&bsdf, wo, u_bsdf[2], (sr_vec2){u_bsdf[0], u_bsdf[1]}, SR_RADIANCE, &s))
+        bool goes_on = sr_bsdf_sample(&bsdf, wo, u_bsdf[2], (sr_vec2){u_bsdf[0], u_bsdf[1]}, SR_RADIANCE, &s);
+        if (is_lit && sr_unoccluded(scene, &x->point, &l, worker))
+            L += beta * L_direct;
+        if (!goes_on)
             return L;
         beta *= s.f * (sr_abs_cos_theta(s.wi) / s.pdf);
         pdf = s.lobe & SR_LOBE_SPECULAR ? INFINITY : s.pdf_is_proportional ? sr_bsdf_pdf(&bsdf, wo, s.wi, SR_RADIANCE) : s.pdf;

@@ -13,6 +13,7 @@ static const float PIXEL_SHARE = 0.125f; // of a pixel's footprint: see sample_p
 struct response {
     float rgb_from_xyz[3][3];
     struct sr_lambda_law law;
+    bool (*ray)(const void *sensor, sr_vec2 raster, sr_vec2 u_lens, float u_time, struct sr_sensor_ray *out);
 };
 
 struct run {
@@ -65,7 +66,9 @@ static void first_albedo(const struct sr_render_job *job, struct sr_hit *hit, sr
 
 static struct response response_of(const struct sr_render_job *job)
 {
-    struct response r = {.law = sr_lambda_law(job->lambda)};
+    const struct sr_sensor_model *sensor = job->sensor.model;
+    bool is_bare = sensor->bare_ray && !sr_scene_has_footprints(job->scene);
+    struct response r = {.law = sr_lambda_law(job->lambda), .ray = is_bare ? sensor->bare_ray : sensor->ray};
     sr_film_response(&job->film, r.rgb_from_xyz);
     return r;
 }
@@ -82,7 +85,7 @@ static bool sample_pixel(const struct sr_render_job *job, const struct response 
     struct sr_sensor_ray view;
     rgb[0] = rgb[1] = rgb[2] = 0;
     sr_vec2 raster = {(float)x + 0.5f + offset.x, (float)y + 0.5f + offset.y};
-    if (!job->sensor.model->ray(job->sensor.self, raster, (sr_vec2){u_lens[0], u_lens[1]}, u[3], &view))
+    if (!response->ray(job->sensor.self, raster, (sr_vec2){u_lens[0], u_lens[1]}, u[3], &view))
         return true;
 
     // jittered samples smooth a pixel themselves, so that textures need little filtering. pbrt's share at 64 samples and

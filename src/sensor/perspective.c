@@ -60,18 +60,29 @@ static sr_status prepare(void *self, struct sr_sensor_raster raster, const struc
     return SR_OK;
 }
 
+// along d, which need not have unit length
+static inline sr_vec3 origin(const struct perspective *s, sr_vec2 raster, sr_vec2 u_lens, sr_vec3 *d)
+{
+    *d = sr_mad(sr_mad(s->d0, raster.x, s->dx), raster.y, s->dy);
+    if (!(s->projection.lens_radius > 0))
+        return s->origin;
+    sr_vec2 l = sr_warp_disk(u_lens);
+    sr_vec3 lens = sr_add(sr_scale(l.x, s->lens_x), sr_scale(l.y, s->lens_y));
+    *d = sr_mad(*d, -s->inv_focal, lens);
+    return sr_add(s->origin, lens);
+}
+
+static bool bare_ray(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_time, struct sr_sensor_ray *out)
+{
+    sr_vec3 d, o = origin(self, raster, u_lens, &d);
+    *out = (struct sr_sensor_ray){.ray = {.o = o, .d = sr_normalize(d), .time = u_time, .t_max = INFINITY}, .weight = 1};
+    return true;
+}
+
 static bool ray(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_time, struct sr_sensor_ray *out)
 {
     const struct perspective *s = self;
-    sr_vec3 d = sr_mad(sr_mad(s->d0, raster.x, s->dx), raster.y, s->dy);
-    sr_vec3 o = s->origin;
-    if (s->projection.lens_radius > 0) {
-        sr_vec2 l = sr_warp_disk(u_lens);
-        sr_vec3 lens = sr_add(sr_scale(l.x, s->lens_x), sr_scale(l.y, s->lens_y));
-        o = sr_add(o, lens);
-        d = sr_mad(d, -s->inv_focal, lens);
-    }
-    sr_vec3 unit = sr_normalize(d);
+    sr_vec3 d, o = origin(s, raster, u_lens, &d), unit = sr_normalize(d);
     *out = (struct sr_sensor_ray){
         .ray = {.o = o, .d = unit, .time = u_time, .t_max = INFINITY},
         .dddx = sr_sub(sr_normalize(sr_add(d, s->dx)), unit),
@@ -114,4 +125,5 @@ const struct sr_sensor_model sr_sensor_perspective = {
     .ray = ray,
     .connect = connect,
     .density = density,
+    .bare_ray = bare_ray,
 };

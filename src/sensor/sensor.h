@@ -43,6 +43,8 @@ struct sr_sensor_model {
     bool (*connect)(const void *self, sr_vec3 p, sr_vec2 u_lens, struct sr_sensor_view *view);
     /* The same weight, of a ray's direction, at a distance along it [pixel^2/m^2]. */
     float (*density)(const void *self, sr_vec3 d, float distance);
+    /* The same where nobody looks at the changes, which are 0. NULL: ray serves. */
+    bool (*bare_ray)(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_time, struct sr_sensor_ray *out);
 };
 extern const struct sr_sensor_model *const sr_sensor_models[]; // ends with NULL
 const struct sr_sensor_model *sr_sensor_model_find(const char *name);
