@@ -22,7 +22,7 @@ struct sr_filter_model {
 extern const struct sr_filter_model *const sr_filter_models[]; // ends with NULL
 const struct sr_filter_model *sr_filter_model_find(const char *name);
 
-enum { SR_FILTER_SHARES = 2048, SR_FILTER_SIGN_CHANGES = 64 };
+enum { SR_FILTER_SHARES = 512, SR_FILTER_SIGN_CHANGES = 64 };
 struct sr_filter_axis {
     float position[SR_FILTER_SHARES + 1]; // [pixel] from the pixel's centre: between two of them lies an equal share of |f|
     float change[SR_FILTER_SIGN_CHANGES]; // [pixel] where f changes its sign
@@ -33,7 +33,7 @@ struct sr_filter {
     const struct sr_filter_model *model;
     const void *self;
     sr_vec2 radius;                    // [pixel]
-    const struct sr_filter_axis *axes; // x and y; NULL: uniform
+    const struct sr_filter_axis *axes[2]; // x and y, one and the same if they are equal; NULL: uniform
     float weight;                      // [1] integral |f| / integral f, as drawn
     double inverse_integral;           // [1/pixel^2] of f
 };

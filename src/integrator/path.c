@@ -129,7 +129,7 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
         struct sr_frame frame;
         uint32_t seed = sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu; // random walks hash it
         if (SR_LIKELY(x->is_plain))
-            sr_material_shade_plain(x->material, &x->point, sr_neg(ray.d), u_bsdf[3], seed, w, &bsdf, &frame);
+            sr_material_shade_plain(x->material, x->lambert, &x->point, sr_neg(ray.d), u_bsdf[3], seed, w, &bsdf, &frame);
         else
             sr_material_shade(x->material, &x->point, sr_neg(ray.d), u_bsdf[3], seed, w, &bsdf, &frame);
         if (!bsdf.model) {

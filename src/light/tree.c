@@ -35,7 +35,10 @@ static inline v8 root(v8 a)
 
 static inline v8 larger(v8 a, v8 b)
 {
-    return select(a > b, a, b);
+    v8 r = a;
+    for (int i = 0; i < WIDTH; ++i)
+        r[i] = a[i] > b[i] ? a[i] : b[i];
+    return r;
 }
 
 static inline v8 magnitude(v8 a)
@@ -43,7 +46,8 @@ static inline v8 magnitude(v8 a)
     return (v8)((v8i)a & 0x7fffffff);
 }
 
-// the members of eight pairs of 16 bits: the first without sign, either with its sign (the machine is little-endian)
+// the members of eight pairs of 16 bits: the first without sign, either with its sign, in units of 1/32767 (the machine is
+// little-endian)
 static inline v8i pairs(const void *p)
 {
     v8i a;
@@ -58,12 +62,12 @@ static inline v8 first_unsigned(v8i a)
 
 static inline v8 first(v8i a)
 {
-    return __builtin_convertvector(a << 16 >> 16, v8) * (1 / 32767.0f);
+    return __builtin_convertvector(a << 16 >> 16, v8);
 }
 
 static inline v8 second(v8i a)
 {
-    return __builtin_convertvector(a >> 16, v8) * (1 / 32767.0f);
+    return __builtin_convertvector(a >> 16, v8);
 }
 
 static inline v8 load(const float *p)
@@ -93,9 +97,10 @@ static inline v8 importance(const struct sr_light_tree_node *b, sr_vec3 p, sr_ve
     v8 reach2 = larger(d2, r * r + 1e-18f);
     v8 cos_b = root(larger(d2 - r * r, zero)); // times d, like all that follow
 
-    v8 cos_o = first(cone), cos_e = second(cone);
+    const float unit = 1 / 32767.0f;
+    v8 cos_o = unit * first(cone), cos_e = unit * second(cone);
     v8 sin_o = root(larger(1 - cos_o * cos_o, zero));
-    v8 cos_w = second(along_x) * dx + second(along_y) * dy + second(along_z) * dz;
+    v8 cos_w = unit * (second(along_x) * dx + second(along_y) * dy + second(along_z) * dz);
     cos_w = select(power < 0, magnitude(cos_w), cos_w);
     v8 sin_w = root(larger(d2 - cos_w * cos_w, zero));
 

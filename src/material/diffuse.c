@@ -28,6 +28,14 @@ static void bsdf(const void *self, const struct sr_material_context *c, struct s
     out->model = &sr_bsdf_diffuse;
 }
 
+const struct sr_sigmoid *sr_material_lambert(const struct sr_material *material)
+{
+    if (!material || material->model != &sr_material_diffuse || !sr_material_is_plain(material))
+        return NULL;
+    const struct sr_spd *s = &((const struct diffuse *)material->self)->reflectance.constant;
+    return s->kind == SR_SPD_SIGMOID && s->scale == 1 ? &s->sigmoid : NULL;
+}
+
 const struct sr_material_model sr_material_diffuse = {
     .name = "diffuse",
     .params = params,

@@ -48,13 +48,21 @@ bool sr_material_has_footprint(const struct sr_material *material);
 /* Whether it looks at no more of a point than p, n and ns: no texture, no map, no preferred tangent. */
 bool sr_material_is_plain(const struct sr_material *material);
 
-/* The BSDF and the frame of a plain material at x. */
-static inline void sr_material_shade_plain(const struct sr_material *material, struct sr_point *x, sr_vec3 wo, float u, uint32_t seed,
-                                           struct sr_wavelengths *w, struct sr_bsdf *out, struct sr_frame *frame)
+/* The reflectance of a plain material that is Lambert's with one colour everywhere; NULL: it is not. */
+const struct sr_sigmoid *sr_material_lambert(const struct sr_material *material);
+
+/* The BSDF and the frame of a plain material at x, which most often is Lambert's. */
+static inline void sr_material_shade_plain(const struct sr_material *material, const struct sr_sigmoid *lambert, struct sr_point *x, sr_vec3 wo,
+                                           float u, uint32_t seed, struct sr_wavelengths *w, struct sr_bsdf *out, struct sr_frame *frame)
 {
+    *frame = sr_frame_from_z(x->ns);
+    if (SR_LIKELY(lambert != NULL)) {
+        out->model = &sr_bsdf_diffuse;
+        ((struct sr_bsdf_diffuse *)(void *)out->data)->reflectance = sr_sigmoid_eval(*lambert, w->lambda);
+        return;
+    }
     struct sr_material_context c = {x, wo, w, u, seed};
     material->model->bsdf(material->self, &c, out);
-    *frame = sr_frame_from_z(x->ns);
 }
 
 /* The BSDF at x and the frame it lives in: applies mix, bump and normal map (which turn x->ns, x->dpdus), then asks the

@@ -16,6 +16,7 @@ struct placed_shape {
     uint32_t per_light;       // primitives that make one light
     uint32_t number;          // from 1, in the order of description
     uint32_t material_number; // from 1; 0: interface
+    const struct sr_sigmoid *lambert; // reflectance, if that is all
     bool has_footprint;       // its material looks at footprints
     bool is_plain;            // neither its material nor its light looks at more than p, n and ns
     bool is_mesh;             // of triangles, which Embree meets itself

@@ -64,6 +64,7 @@ static inline bool raycast(const struct sr_scene *scene, const struct sr_ray *ra
     hit->material_number = s->material_number;
     hit->has_footprint = s->has_footprint;
     hit->is_plain = s->is_plain;
+    hit->lambert = s->lambert;
     return true;
 }
 

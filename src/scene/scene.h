@@ -42,6 +42,7 @@ struct sr_hit {
     struct sr_point point;
     float t;                            // [m] along the ray
     const struct sr_material *material; // NULL: interface
+    const struct sr_sigmoid *lambert;   // its reflectance, if it is plain and Lambert's; or NULL
     uint32_t light;                     // index of the area light here, or SR_NO_LIGHT
     uint32_t object;                    // number of the shape, from 1
     uint32_t material_number;           // from 1; 0: interface

@@ -158,11 +158,14 @@ static bool intersect(const void *self, uint32_t primitive, sr_vec3 o, sr_vec3 d
     (void)primitive;
     const struct sr_shape_sphere *s = self;
     sr_dvec3 p = sr_affine(s->quadric.to_object, sr_dvec(o), 1), w = sr_affine(s->quadric.to_object, sr_dvec(d), 0);
-    double r = (double)s->radius, a = sr_ddot(w, w), b = sr_ddot(p, w), distance = sqrt(sr_ddot(p, p));
+    double r = (double)s->radius, a = sr_ddot(w, w), b = sr_ddot(p, w);
     // the ray's nearest approach to the centre, l, tells b^2 - a c without subtracting great squares (Hearn & Baker)
     double k = b / a;
     sr_dvec3 l = {p.x - k * w.x, p.y - k * w.y, p.z - k * w.z};
-    double nearest = sqrt(sr_ddot(l, l)), roots[2];
+    double nearest2 = sr_ddot(l, l), roots[2];
+    if (nearest2 > r * r) // what most rays do
+        return false;
+    double nearest = sqrt(nearest2), distance = sqrt(sr_ddot(p, p));
     if (!sr_quadric_roots(a, b, (distance - r) * (distance + r), a * (r - nearest) * (r + nearest), roots))
         return false;
     for (int i = 0; i < 2; ++i) {

@@ -78,9 +78,11 @@ static sr_vec3 blend(const sr_vec3 *a, const int32_t *c, float b0, float b1, flo
     return sr_add(sr_add(sr_scale(b0, a[c[0]]), sr_scale(b1, a[c[1]])), sr_scale(b2, a[c[2]]));
 }
 
+static const float gamma7 = 7.1f * SR_MACHINE_EPSILON; // gamma(7), rounded up
+
 static sr_vec3 error_bound(const sr_vec3 v[3], float b0, float b1, float b2)
 {
-    const float g = 7.1f * SR_MACHINE_EPSILON; // gamma(7), rounded up
+    const float g = gamma7;
     return (sr_vec3){g * (fabsf(b0 * v[0].x) + fabsf(b1 * v[1].x) + fabsf(b2 * v[2].x)),
                      g * (fabsf(b0 * v[0].y) + fabsf(b1 * v[1].y) + fabsf(b2 * v[2].y)),
                      g * (fabsf(b0 * v[0].z) + fabsf(b1 * v[1].z) + fabsf(b2 * v[2].z))};
@@ -167,6 +169,27 @@ static void point(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_p
     }
 }
 
+/* A vertex and the number behind it, to be worked on with one instruction. */
+typedef float quad __attribute__((vector_size(16)));
+typedef int32_t quad_bits __attribute__((vector_size(16)));
+
+static inline quad load(const sr_vec3 *p)
+{
+    quad a;
+    __builtin_memcpy(&a, p, sizeof a);
+    return a;
+}
+
+static inline sr_vec3 three(quad a)
+{
+    return (sr_vec3){a[0], a[1], a[2]};
+}
+
+static inline quad magnitude(quad a)
+{
+    return (quad)((quad_bits)a & INT32_MAX);
+}
+
 static void bare_point(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_point *x)
 {
     const struct sr_shape_mesh *m = self;
@@ -174,11 +197,12 @@ static void bare_point(const void *self, uint32_t primitive, sr_vec2 hit, struct
     const sr_vec3 *P = m->P.data;
     for (int i = 0; m->N.count && i < 3; ++i) // all misses at once
         __builtin_prefetch((const sr_vec3 *)m->N.data + c[i]);
-    const sr_vec3 v[3] = {P[c[0]], P[c[1]], P[c[2]]};
+    quad v0 = load(P + c[0]), v1 = load(P + c[1]), v2 = load(P + c[2]);
     float b1 = hit.x, b2 = hit.y, b0 = 1 - b1 - b2;
-    x->p = sr_add(sr_add(sr_scale(b0, v[0]), sr_scale(b1, v[1])), sr_scale(b2, v[2]));
-    x->p_error = error_bound(v, b0, b1, b2);
-    sr_vec3 n = sr_unit_normal(sr_cross(sr_sub(v[0], v[2]), sr_sub(v[1], v[2])));
+    quad a = b0 * v0, b = b1 * v1, d = b2 * v2;
+    x->p = three(a + b + d);
+    x->p_error = three(gamma7 * (magnitude(a) + magnitude(b) + magnitude(d)));
+    sr_vec3 n = sr_unit_normal(sr_cross(three(v0 - v2), three(v1 - v2)));
     if (m->N.count) {
         sr_vec3 s = blend(m->N.data, c, b0, b1, b2);
         float l2 = sr_dot(s, s);

@@ -55,12 +55,12 @@ struct sr_xyz sr_spectrum_to_xyz(sr_spectrum L, const struct sr_wavelengths *w)
     sr_spectrum weight = sr_spectrum_select(counts, L / w->pdf, SR_BLACK);
     sr_spectrum_int i = __builtin_convertvector(at, sr_spectrum_int);
     sr_spectrum upper = weight * (at - __builtin_convertvector(i, sr_spectrum)), lower = weight - upper;
-    quad sum = {0};
+    quad sums[2] = {{0}}; // two, so that additions wait less for each other
     for (int k = 0; k < SR_LAMBDA_COUNT; ++k) {
         const quad *row =
             (const quad *)(const void *)sr_data_observer_f[i[k]]; // the last row is followed by a zero one
-        sum += lower[k] * row[0] + upper[k] * row[1];
+        sums[k & 1] += lower[k] * row[0] + upper[k] * row[1];
     }
-    sum *= 1.0f / SR_LAMBDA_COUNT;
+    quad sum = (sums[0] + sums[1]) * (1.0f / SR_LAMBDA_COUNT);
     return (struct sr_xyz){sum[0], sum[1], sum[2]};
 }

@@ -15,6 +15,25 @@
 #define PEAK 4.965114231744276      // solves x = 5 (1 - exp(-x)): Wien's law
 #define PEAK_EXPM1 142.3249151279
 
+// values i and i + 1 for each of the indices
+static inline void neighbours(const float *values, sr_spectrum_int i, sr_spectrum *v0, sr_spectrum *v1)
+{
+#if SR_LAMBDA_COUNT == 8 && !defined(float) // eight loads of pairs, since compilers make sixteen
+    typedef double pairs __attribute__((vector_size(32)));
+    double pair[8];
+    for (int k = 0; k < 8; ++k)
+        __builtin_memcpy(&pair[k], &values[i[k]], sizeof pair[k]);
+    sr_spectrum a = (sr_spectrum)(pairs){pair[0], pair[1], pair[4], pair[5]}, b = (sr_spectrum)(pairs){pair[2], pair[3], pair[6], pair[7]};
+    *v0 = __builtin_shufflevector(a, b, 0, 2, 8, 10, 4, 6, 12, 14);
+    *v1 = __builtin_shufflevector(a, b, 1, 3, 9, 11, 5, 7, 13, 15);
+#else
+    for (int k = 0; k < SR_LAMBDA_COUNT; ++k) {
+        (*v0)[k] = values[i[k]];
+        (*v1)[k] = values[i[k] + 1];
+    }
+#endif
+}
+
 static sr_spectrum table_eval(const struct sr_table *table, sr_spectrum lambda)
 {
     float last = (float)(table->count - 1);
@@ -24,10 +43,7 @@ static sr_spectrum table_eval(const struct sr_table *table, sr_spectrum lambda)
     sr_spectrum below = sr_spectrum_select(x < last - 1, x, SR_BLACK + (last - 1));
     sr_spectrum_int i = __builtin_convertvector(below, sr_spectrum_int);
     sr_spectrum v0, v1;
-    for (int k = 0; k < SR_LAMBDA_COUNT; ++k) {
-        v0[k] = table->values[i[k]];
-        v1[k] = table->values[i[k] + 1];
-    }
+    neighbours(table->values, i, &v0, &v1);
     sr_spectrum t = x - __builtin_convertvector(i, sr_spectrum);
     t = sr_spectrum_select(t < 1.0f, t, SR_ONE);
     return sr_spectrum_select(inside, v0 + t * (v1 - v0), SR_BLACK);
