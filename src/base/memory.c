@@ -1,17 +1,22 @@
 /* SPDX-License-Identifier: MIT */
 /* Memory: the only file that asks the system for it. Three lifetimes use it through arenas: scene, job, scratch. */
+#define _DEFAULT_SOURCE // madvise
 #include "base/base.h"
 
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 static atomic_ullong alloc_count;
 
-static size_t round_up(size_t size)
+/* What is large is read all over: large pages spare the processor most of the looking up of addresses. */
+static const size_t LARGE = 1 << 20, LARGE_PAGE = 2 << 20; // [B]
+
+static size_t round_up(size_t size, size_t to)
 {
-    return (size + 63) & ~(size_t)63;
+    return (size + to - 1) & ~(to - 1);
 }
 
 void *sr_alloc(size_t size)
@@ -19,9 +24,14 @@ void *sr_alloc(size_t size)
     atomic_fetch_add_explicit(&alloc_count, 1, memory_order_relaxed);
     if (size > SIZE_MAX / 4)
         return NULL;
-    void *p = aligned_alloc(64, round_up(size ? size : 1));
+    size_t unit = size < LARGE ? 64 : LARGE_PAGE, whole = round_up(size ? size : 1, unit);
+    void *p = aligned_alloc(unit, whole);
+#ifdef MADV_HUGEPAGE
+    if (p && unit == LARGE_PAGE)
+        madvise(p, whole, MADV_HUGEPAGE);
+#endif
     if (p)
-        memset(p, 0, round_up(size ? size : 1));
+        memset(p, 0, size);
     return p;
 }
 
@@ -59,7 +69,7 @@ void *sr_arena_alloc(struct sr_arena *arena, size_t size)
 {
     if (size > SIZE_MAX / 4)
         return NULL;
-    size = round_up(size ? size : 1);
+    size = round_up(size ? size : 1, 64);
     if (!arena->blocks || arena->blocks->size - arena->used < size) {
         size_t grown = arena->blocks ? arena->blocks->size * 2 : FIRST_BLOCK;
         size_t block_size = grown < LAST_BLOCK ? grown : LAST_BLOCK;

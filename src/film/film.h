@@ -22,7 +22,7 @@ struct sr_filter_model {
 extern const struct sr_filter_model *const sr_filter_models[]; // ends with NULL
 const struct sr_filter_model *sr_filter_model_find(const char *name);
 
-enum { SR_FILTER_SHARES = 512, SR_FILTER_SIGN_CHANGES = 64 };
+enum { SR_FILTER_SHARES = 2048, SR_FILTER_SIGN_CHANGES = 64 };
 struct sr_filter_axis {
     float position[SR_FILTER_SHARES + 1]; // [pixel] from the pixel's centre: between two of them lies an equal share of |f|
     float change[SR_FILTER_SIGN_CHANGES]; // [pixel] where f changes its sign

@@ -131,10 +131,10 @@ const struct sr_filter_model *sr_filter_model_find(const char *name)
  *
  * Every filter is a product of one function along x and one along y. Each axis has a table of the positions that divide the
  * integral of |f| into equal shares, linear between them: a position costs one look-up, and the map is monotone, so that
- * numbers that are well spread stay so. Within a share (1/512: the table has to stay in the nearest cache) the density is even instead of following f. Where f changes
+ * numbers that are well spread stay so. Within a share (1/2048) the density is even instead of following f. Where f changes
  * its sign is remembered by position. */
 
-enum { STEPS = 32 }; // of the quadrature, for each share
+enum { STEPS = 8 }; // of the quadrature, for each share
 
 static double along(const struct sr_filter *f, int axis, sr_vec2 peak, double at)
 {

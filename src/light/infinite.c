@@ -13,13 +13,14 @@
  * own choice. A uniform sky is never drawn at all, for the same reason. Estimators without such a choice must not use it. */
 #include "light/emission.h"
 
-/* What a texel radiates: scale times sigmoid times white. */
+/* What a texel radiates, scale times sigmoid times white, and how densely it is drawn: in one place, for one look-up. */
 struct cell {
     struct sr_sigmoid sigmoid;
-    float scale; // [1]
+    float scale;   // [1]
+    float density; // [1] over the square
 };
 
-enum { MOST_CELLS = 1 << 22 }; // 64 MiB
+enum { MOST_CELLS = 1 << 22 }; // 80 MiB
 
 struct infinite {
     struct sr_light_common common;
@@ -86,10 +87,11 @@ static double upper_illuminance(const struct sr_texels *t)
     return sum * 4 * (double)SR_PI / ((double)t->width * t->height);
 }
 
-static struct cell cell_of(const struct sr_texels *t, size_t i)
+static struct cell cell_of(const struct infinite *m, size_t i)
 {
+    const struct sr_texels *t = &m->common.texels;
     struct sr_spd s = sr_spd_from_rgb_illuminant(t->space, sr_light_texel(t, (uint32_t)(i % t->width), (uint32_t)(i / t->width)));
-    return (struct cell){s.sigmoid, s.scale};
+    return (struct cell){s.sigmoid, s.scale * m->factor, m->density.density[i]};
 }
 
 static sr_status build_cells(struct infinite *m, struct sr_arena *arena, struct sr_error *error)
@@ -102,7 +104,7 @@ static sr_status build_cells(struct infinite *m, struct sr_arena *arena, struct 
     if (!cells)
         return sr_fail(error, SR_ERROR_RESOURCE, "no memory for the spectra of %s", m->filename);
     for (size_t i = 0; i < n; ++i)
-        cells[i] = cell_of(t, i);
+        cells[i] = cell_of(m, i);
     m->cells = cells;
     return SR_OK;
 }
@@ -160,7 +162,7 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     m->factor = (float)factor;
     m->white = sr_colour_space(t->space)->illuminant;
     m->luminance = (float)(factor * sr_colour_space(t->space)->illuminant_luminous_integral * sr_light_mean_luminance(t));
-    return build_cells(m, arena, error) == SR_OK ? build_density(m, arena, error) : error->status;
+    return build_density(m, arena, error) == SR_OK ? build_cells(m, arena, error) : error->status;
 }
 
 static void place(void *self, sr_vec3 scene_centre, float scene_radius)
@@ -184,10 +186,15 @@ static sr_vec2 square(const struct infinite *m, sr_vec3 wi, float *jacobian)
     return sr_equal_area_sphere_to_square(sr_scale(inverse_length, d));
 }
 
-static sr_spectrum image_Le(const struct infinite *m, size_t i, const struct sr_wavelengths *w)
+static inline struct cell look_up(const struct infinite *m, sr_vec2 p)
 {
-    struct cell c = m->cells ? m->cells[i] : cell_of(&m->common.texels, i);
-    struct sr_spd s = {.kind = SR_SPD_ILLUMINANT, .scale = c.scale * m->factor, .sigmoid = c.sigmoid, .table = m->white};
+    size_t i = sr_piecewise2_cell(&m->density, p);
+    return m->cells ? m->cells[i] : cell_of(m, i);
+}
+
+static inline sr_spectrum cell_Le(const struct infinite *m, struct cell c, const struct sr_wavelengths *w)
+{
+    struct sr_spd s = {.kind = SR_SPD_ILLUMINANT, .scale = c.scale, .sigmoid = c.sigmoid, .table = m->white};
     return sr_spd_along(&s, w);
 }
 
@@ -198,7 +205,7 @@ static sr_spectrum Le(const void *self, const struct sr_point *there, sr_vec3 w,
     if (!is_image(m))
         return sr_spd_along(&m->L, wavelengths);
     float jacobian;
-    return image_Le(m, sr_piecewise2_cell(&m->density, square(m, sr_neg(w), &jacobian)), wavelengths);
+    return cell_Le(m, look_up(m, square(m, sr_neg(w), &jacobian)), wavelengths);
 }
 
 static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
@@ -219,7 +226,7 @@ static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u
         jacobian = m->determinant * length * length * length;
         wi = sr_scale(1 / length, wi);
     }
-    *s = (struct sr_light_sample){.L = image_Le(m, sr_piecewise2_cell(&m->density, p), w), .wi = wi, .distance = INFINITY,
+    *s = (struct sr_light_sample){.L = cell_Le(m, look_up(m, p), w), .wi = wi, .distance = INFINITY,
                                   .pdf = pdf * jacobian / (4 * SR_PI)};
     return !sr_spectrum_is_black(s->L);
 }
@@ -242,9 +249,9 @@ static sr_spectrum Le_pdf(const void *self, sr_vec3 wi, const struct sr_waveleng
     if (!is_image(m))
         return sr_spd_along(&m->L, w);
     float jacobian;
-    size_t i = sr_piecewise2_cell(&m->density, square(m, wi, &jacobian));
-    *density = m->density.density[i] * jacobian / (4 * SR_PI);
-    return image_Le(m, i, w);
+    struct cell c = look_up(m, square(m, wi, &jacobian));
+    *density = c.density * jacobian / (4 * SR_PI);
+    return cell_Le(m, c, w);
 }
 
 /* Half of the rays leave as `sample` draws them, half evenly: no ray carries more than twice the mean flux, and none that

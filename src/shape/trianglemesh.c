@@ -212,7 +212,9 @@ static void bare_point(const void *self, uint32_t primitive, sr_vec2 hit, struct
             return;
         }
     }
-    x->n = x->ns = sr_scale(m->flip_normals ? -1 : 1, n);
+    n = sr_scale(m->flip_normals ? -1 : 1, n);
+    x->n = n;
+    x->ns = n;
 }
 
 static sr_vec2 uv(const void *self, uint32_t primitive, sr_vec2 hit)
