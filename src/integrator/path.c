@@ -53,8 +53,9 @@ static inline bool direct(const struct sr_lights *lights, const struct sr_point 
     sr_vec3 wi = sr_to_local(frame, l->wi);
     float pdf = pmf * l->pdf, pdf_bsdf;
     sr_spectrum f = sr_bsdf_f_pdf(bsdf, wo, wi, SR_RADIANCE, &pdf_bsdf);
-    *L = f * l->L * (sr_abs_cos_theta(wi) * (l->is_delta ? 1 : sr_mis_weight(pdf, pdf_bsdf)) / pdf);
-    return sr_spectrum_any(*L > 0.0f);
+    sr_spectrum fL = f * l->L * sr_abs_cos_theta(wi);
+    *L = fL * ((l->is_delta ? 1 : sr_mis_weight(pdf, pdf_bsdf)) / pdf);
+    return sr_spectrum_any(fL > 0.0f);
 }
 
 static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
@@ -80,6 +81,10 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
     }
 
     for (int bounce = 0;;) {
+        // drawn before the ray is traced, so that the processor does both at once
+        uint32_t group = SR_USE_BOUNCE + 2 * (uint32_t)bounce;
+        sr_u4 u_light, u_bsdf;
+        sr_sample8(sampler, group, &u_light, &u_bsdf);
         bool is_seen = bounce == 0 && (first || has_footprints);
         if (!(is_seen ? sr_trace(scene, &ray, x, worker) : sr_trace_bare(scene, &ray, x, worker))) {
             if (first && bounce == 0)
@@ -122,9 +127,6 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
             }
         }
         worker->vertices += 1;
-        uint32_t group = SR_USE_BOUNCE + 2 * (uint32_t)bounce;
-        sr_u4 u_light, u_bsdf;
-        sr_sample8(sampler, group, &u_light, &u_bsdf);
         struct sr_bsdf bsdf;
         struct sr_frame frame;
         uint32_t seed = sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu; // random walks hash it
@@ -142,8 +144,8 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
         if (wo.z == 0)
             return L;
 
-        // integral f L |cos theta_i| dwi, by the lights and by the surface: L(x, wi) is the next turn of this loop. Both are
-        // drawn before the shadow ray is traced, so that the processor need not wait for it
+        // integral f L |cos theta_i| dwi, by the lights and by the surface: L(x, wi) is the next turn of this loop. Both, too,
+        // are drawn before the shadow ray is traced
         struct sr_light_sample l;
         sr_spectrum L_direct;
         bool is_lit = (sr_bsdf_is_diffuse(&bsdf) || sr_bsdf_lobes(&bsdf) & (SR_LOBE_DIFFUSE | SR_LOBE_GLOSSY)) &&

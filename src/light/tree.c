@@ -35,10 +35,11 @@ static inline v8 root(v8 a)
 
 static inline v8 larger(v8 a, v8 b)
 {
-    v8 r = a;
-    for (int i = 0; i < WIDTH; ++i)
-        r[i] = a[i] > b[i] ? a[i] : b[i];
-    return r;
+#ifdef __AVX__
+    return __builtin_ia32_maxps256(a, b);
+#else
+    return select(a > b, a, b);
+#endif
 }
 
 static inline v8 magnitude(v8 a)
@@ -83,7 +84,7 @@ static inline v8 cosine_of_rest(v8 cos_a, v8 sin_a, v8 cos_b, v8 sin_b, v8 d2)
     return select(sin_a * cos_b - cos_a * sin_b <= 0, d2, cos_a * cos_b + sin_a * sin_b);
 }
 
-static inline v8 importance(const struct sr_light_tree_node *b, sr_vec3 p, sr_vec3 ns, bool has_normal)
+SR_INLINE v8 importance(const struct sr_light_tree_node *b, sr_vec3 p, sr_vec3 ns, bool has_normal)
 {
     const v8 zero = {0};
     // from the centres to the receiver
@@ -121,18 +122,22 @@ static inline v8 importance(const struct sr_light_tree_node *b, sr_vec3 p, sr_ve
     return select(can_reach, weight, zero);
 }
 
+// of each and all before it
+static inline v8 running_sum(v8 w)
+{
+    const v8 zero = {0};
+    w += __builtin_shufflevector(zero, w, 0, 8, 9, 10, 11, 12, 13, 14);
+    w += __builtin_shufflevector(zero, w, 0, 1, 8, 9, 10, 11, 12, 13);
+    return w + __builtin_shufflevector(zero, w, 0, 1, 2, 3, 8, 9, 10, 11);
+}
+
 // Of the weights of the children: the sums up to and with each. Whoever has a weight keeps a share that the rounding of the
 // sums cannot take, so that nobody is left out.
 static inline v8 add_up(v8 w)
 {
     const v8 zero = {0};
-    v8 all = w + __builtin_shufflevector(w, w, 4, 5, 6, 7, 0, 1, 2, 3);
-    all += __builtin_shufflevector(all, all, 2, 3, 0, 1, 6, 7, 4, 5);
-    all += __builtin_shufflevector(all, all, 1, 0, 3, 2, 5, 4, 7, 6);
-    w += select(w > 0, all * 0x1p-21f, zero);
-    w += __builtin_shufflevector(zero, w, 0, 8, 9, 10, 11, 12, 13, 14);
-    w += __builtin_shufflevector(zero, w, 0, 1, 8, 9, 10, 11, 12, 13);
-    return w + __builtin_shufflevector(zero, w, 0, 1, 2, 3, 8, 9, 10, 11);
+    v8 sums = running_sum(w), counts = running_sum(select(w > 0, zero + 1, zero));
+    return sums + counts * (sums[WIDTH - 1] * 0x1p-21f);
 }
 
 // the share of child i, exactly as a choice by these sums grants it
@@ -145,9 +150,13 @@ static inline float share(const float upto[WIDTH + 1], unsigned i)
 static inline unsigned count_reached(v8 upto, float t)
 {
     v8i reached = upto <= t; // -1 for each
+#ifdef __AVX__
+    unsigned n = (unsigned)__builtin_popcount((unsigned)__builtin_ia32_movmskps256((v8)reached));
+#else
     reached += __builtin_shufflevector(reached, reached, 4, 5, 6, 7, 0, 1, 2, 3);
     reached += __builtin_shufflevector(reached, reached, 2, 3, 0, 1, 6, 7, 4, 5);
     unsigned n = (unsigned)-(reached[0] + reached[1]);
+#endif
     return n < WIDTH - 1 ? n : WIDTH - 1;
 }
 
