@@ -12,7 +12,7 @@
 static atomic_ullong alloc_count;
 
 /* What is large is read all over: large pages spare the processor most of the looking up of addresses. */
-static const size_t LARGE = 1 << 20, LARGE_PAGE = 2 << 20; // [B]
+static const size_t LARGE_PAGE = 2 << 20; // [B]
 
 static size_t round_up(size_t size, size_t to)
 {
@@ -24,14 +24,15 @@ void *sr_alloc(size_t size)
     atomic_fetch_add_explicit(&alloc_count, 1, memory_order_relaxed);
     if (size > SIZE_MAX / 4)
         return NULL;
-    size_t unit = size < LARGE ? 64 : LARGE_PAGE, whole = round_up(size ? size : 1, unit);
-    void *p = aligned_alloc(unit, whole);
+    bool is_large = size >= LARGE_PAGE;
+    size_t whole = round_up(size ? size : 1, 64);
+    void *p = is_large ? aligned_alloc(LARGE_PAGE, round_up(whole, LARGE_PAGE)) : aligned_alloc(64, whole);
 #ifdef MADV_HUGEPAGE
-    if (p && unit == LARGE_PAGE)
-        madvise(p, whole, MADV_HUGEPAGE);
+    if (p && is_large) // the rest after the last whole page would be wasted
+        madvise(p, whole / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE);
 #endif
     if (p)
-        memset(p, 0, size);
+        memset(p, 0, whole);
     return p;
 }
 

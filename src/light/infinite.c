@@ -91,7 +91,8 @@ static struct cell cell_of(const struct infinite *m, size_t i)
 {
     const struct sr_texels *t = &m->common.texels;
     struct sr_spd s = sr_spd_from_rgb_illuminant(t->space, sr_light_texel(t, (uint32_t)(i % t->width), (uint32_t)(i / t->width)));
-    return (struct cell){s.sigmoid, s.scale * m->factor, m->density.density[i]};
+    sr_vec2 centre = {((float)(i % t->width) + 0.5f) / (float)t->width, ((float)(i / t->width) + 0.5f) / (float)t->height};
+    return (struct cell){s.sigmoid, s.scale * m->factor, sr_piecewise2_pdf(&m->density, centre)};
 }
 
 static sr_status build_cells(struct infinite *m, struct sr_arena *arena, struct sr_error *error)
@@ -186,9 +187,16 @@ static sr_vec2 square(const struct infinite *m, sr_vec3 wi, float *jacobian)
     return sr_equal_area_sphere_to_square(sr_scale(inverse_length, d));
 }
 
+static inline size_t texel_index(float u, uint32_t n)
+{
+    float i = u * (float)n;
+    return i > 0 ? (size_t)sr_min(i, (float)(n - 1)) : 0;
+}
+
 static inline struct cell look_up(const struct infinite *m, sr_vec2 p)
 {
-    size_t i = sr_piecewise2_cell(&m->density, p);
+    const struct sr_texels *t = &m->common.texels;
+    size_t i = texel_index(p.y, t->height) * t->width + texel_index(p.x, t->width);
     return m->cells ? m->cells[i] : cell_of(m, i);
 }
 
@@ -281,7 +289,7 @@ static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const s
     if (is_image(m))
         wi = sr_normalize(sr_add(sr_add(sr_scale(d.x, m->columns[0]), sr_scale(d.y, m->columns[1])), sr_scale(d.z, m->columns[2])));
     *ray = (struct sr_light_ray){.from = {.p = sr_light_outside(m->centre, m->radius, wi, u_place)}, .w = sr_neg(wi),
-                                 .L = is_image(m) ? image_Le(m, p, w) : sr_spd_along(&m->L, w), .pdf_area = SR_INV_PI / sr_sqr(m->radius),
+                                 .L = is_image(m) ? cell_Le(m, look_up(m, p), w) : sr_spd_along(&m->L, w), .pdf_area = SR_INV_PI / sr_sqr(m->radius),
                                  .pdf_direction = emit_density(m, wi)};
     return ray->pdf_direction > 0 && !sr_spectrum_is_black(ray->L);
 }

@@ -84,12 +84,14 @@ uint32_t sr_alias_sample(const struct sr_alias *a, float u, float *pmf, float *u
     return outcome;
 }
 
-// cdf has been allocated; its steps are the probabilities that sampling and pdf share
+// f and cdf have been allocated; the steps of cdf are the probabilities that sampling and pdf share
 static void integrate(const float *f, struct sr_piecewise1 *d)
 {
     double sum = 0, running = 0;
-    for (uint32_t i = 0; i < d->count; ++i)
+    for (uint32_t i = 0; i < d->count; ++i) {
+        d->f[i] = (float)weight(f[i]);
         sum += weight(f[i]);
+    }
     for (uint32_t i = 0; i < d->count; ++i) {
         d->cdf[i] = sum > 0 ? (float)(running / sum) : (float)((double)i / d->count);
         running += weight(f[i]);
@@ -121,10 +123,11 @@ enum { MOST_GUIDED = 65536 };
 
 bool sr_piecewise1_build(struct sr_arena *arena, const float *f, uint32_t count, float lo, float hi, struct sr_piecewise1 *d)
 {
-    *d = (struct sr_piecewise1){.count = count, .lo = lo, .hi = hi, .per_unit = (float)count / (hi - lo), .width = (hi - lo) / (float)count};
+    *d = (struct sr_piecewise1){.count = count, .lo = lo, .hi = hi, .per_unit = (float)count / (hi - lo)};
+    d->f = count ? sr_arena_alloc(arena, count * sizeof(float)) : NULL;
     d->cdf = count ? sr_arena_alloc(arena, ((size_t)count + 1) * sizeof(float)) : NULL;
     d->guide = count <= MOST_GUIDED ? sr_arena_alloc(arena, ((size_t)count + 2) * sizeof *d->guide) : NULL;
-    if (!d->cdf || (!d->guide && count <= MOST_GUIDED))
+    if (!d->f || !d->cdf || (!d->guide && count <= MOST_GUIDED))
         return false;
     integrate(f, d);
     if (d->guide)
@@ -149,7 +152,7 @@ float sr_piecewise1_sample(const struct sr_piecewise1 *d, float u, float *pdf, u
     uint32_t i = (uint32_t)(u * (float)d->count);
     uint32_t first = d->guide && i < d->count ? search(d->cdf, d->guide[i], d->guide[i + 2], u) : search(d->cdf, 0, d->count - 1, u);
     float within = (u - d->cdf[first]) / (d->cdf[first + 1] - d->cdf[first]);
-    float x = d->lo + ((float)first + within) * d->width;
+    float x = d->lo + ((float)first + within) / d->per_unit;
     // rounding at an edge must not carry x to a neighbour whose density differs
     for (int k = 0; k < 64 && cell_of(d, x) != first; ++k)
         x = nextafterf(x, cell_of(d, x) > first ? d->lo : d->hi);
@@ -172,14 +175,14 @@ bool sr_piecewise2_build(struct sr_arena *arena, const float *f, uint32_t nx, ui
     if (columns == 0 || rows == 0)
         return false;
     d->conditional = sr_arena_alloc(arena, rows * sizeof *d->conditional);
-    d->density = sr_arena_alloc(arena, rows * columns * sizeof(float));
+    float *values = sr_arena_alloc(arena, rows * columns * sizeof(float));
     float *cdf = sr_arena_alloc(arena, rows * (columns + 1) * sizeof(float));
     uint16_t *guides = nx <= MOST_GUIDED ? sr_arena_alloc(arena, rows * (columns + 2) * sizeof *guides) : NULL;
     float *means = sr_alloc(rows * sizeof(float));
-    bool ok = d->conditional && d->density && cdf && means && (guides || nx > MOST_GUIDED);
+    bool ok = d->conditional && values && cdf && means && (guides || nx > MOST_GUIDED);
     for (size_t y = 0; ok && y < rows; ++y) {
-        d->conditional[y] = (struct sr_piecewise1){.count = nx, .lo = 0, .hi = 1, .per_unit = (float)nx, .width = 1 / (float)nx,
-                                                   .cdf = cdf + y * (columns + 1), .guide = guides ? guides + y * (columns + 2) : NULL};
+        d->conditional[y] = (struct sr_piecewise1){.count = nx, .lo = 0, .hi = 1, .per_unit = (float)nx, .f = values + y * columns,
+                                                      .cdf = cdf + y * (columns + 1), .guide = guides ? guides + y * (columns + 2) : NULL};
         integrate(f + y * columns, &d->conditional[y]);
         if (guides)
             make_guide(&d->conditional[y]);
@@ -188,9 +191,6 @@ bool sr_piecewise2_build(struct sr_arena *arena, const float *f, uint32_t nx, ui
     ok = ok && sr_piecewise1_build(arena, means, ny, 0, 1, &d->marginal);
     d->integral = d->marginal.integral;
     sr_free(means);
-    for (size_t y = 0; ok && y < rows; ++y)
-        for (size_t x = 0; x < columns; ++x)
-            d->density[y * columns + x] = density(&d->conditional[y], (uint32_t)x) * density(&d->marginal, (uint32_t)y);
     return ok;
 }
 
@@ -203,4 +203,11 @@ sr_vec2 sr_piecewise2_sample(const struct sr_piecewise2 *d, sr_vec2 u, float *pd
     if (pdf)
         *pdf = pdf_x * pdf_y;
     return (sr_vec2){x, y};
+}
+
+float sr_piecewise2_pdf(const struct sr_piecewise2 *d, sr_vec2 p)
+{
+    if (!(p.y >= 0 && p.y <= 1))
+        return 0;
+    return sr_piecewise1_pdf(&d->marginal, p.y) * sr_piecewise1_pdf(&d->conditional[cell_of(&d->marginal, p.y)], p.x);
 }

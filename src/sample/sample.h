@@ -128,24 +128,6 @@ static inline sr_u4 sr_sample4(const struct sr_sampler *s, uint32_t group)
     return sr_bits_to_u4(sr_reverse_bits_u4(x));
 }
 
-typedef uint32_t sr_u8_bits __attribute__((vector_size(32)));
-static inline sr_u8_bits sr_reverse_bits_u8(sr_u8_bits x)
-{
-    typedef char sr_bytes32 __attribute__((vector_size(32)));
-    sr_bytes32 b = (sr_bytes32)x;
-    b = __builtin_shufflevector(b, b, 3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12, 19, 18, 17, 16, 23, 22, 21, 20, 27, 26, 25, 24, 31, 30, 29,
-                                28);
-#if defined(__GFNI__) && defined(__AVX2__) // the matrix that mirrors each byte
-    typedef uint64_t sr_wide4 __attribute__((vector_size(32)));
-    return (sr_u8_bits)__builtin_ia32_vgf2p8affineqb_v32qi(b, (sr_bytes32)((sr_wide4){0} + 0x8040201008040201ull), 0);
-#else
-    x = (sr_u8_bits)b;
-    x = (x & 0x0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0fu);
-    x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
-    return (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
-#endif
-}
-
 /* The numbers of group and of group + 1, exactly as sr_sample4 gives them, for two thirds of the price. */
 static inline void sr_sample8(const struct sr_sampler *s, uint32_t group, sr_u4 *first, sr_u4 *second)
 {
@@ -155,8 +137,10 @@ static inline void sr_sample8(const struct sr_sampler *s, uint32_t group, sr_u4 
         return;
     }
     typedef uint64_t sr_wide4 __attribute__((vector_size(32)));
+    typedef uint32_t sr_u8_bits __attribute__((vector_size(32)));
     typedef int32_t sr_i8 __attribute__((vector_size(32)));
     typedef float sr_u8 __attribute__((vector_size(8 * sizeof(float))));
+    typedef uint8_t sr_bytes32 __attribute__((vector_size(32)));
     uint64_t wide[2] = {(s->key ^ (uint64_t)group << 32) * 0x9e3779b97f4a7c15ull, (s->key ^ (uint64_t)(group + 1) << 32) * 0x9e3779b97f4a7c15ull};
     uint32_t i0 = (uint32_t)sr_reversed_byte[s->sample & 255] << 8 | sr_reversed_byte[s->sample >> 8 & 255];
     i0 ^= i0 * 0x3d20adeau;
@@ -177,7 +161,13 @@ static inline void sr_sample8(const struct sr_sampler *s, uint32_t group, sr_u4 
     x *= lane >> 16 | 1;
     x ^= x * 0x05526c56u;
     x ^= x * 0x53a22864u;
-    sr_u8 u = __builtin_convertvector((sr_i8)(sr_reverse_bits_u8(x) >> 8), sr_u8) * 0x1p-24f;
+    sr_bytes32 b = (sr_bytes32)x;
+    x = (sr_u8_bits)__builtin_shufflevector(b, b, 3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12, 19, 18, 17, 16, 23, 22, 21, 20, 27, 26, 25, 24,
+                                            31, 30, 29, 28);
+    x = (x & 0x0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0fu);
+    x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
+    x = (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
+    sr_u8 u = __builtin_convertvector((sr_i8)(x >> 8), sr_u8) * 0x1p-24f;
     *first = __builtin_shufflevector(u, u, 0, 1, 2, 3);
     *second = __builtin_shufflevector(u, u, 4, 5, 6, 7);
 }
@@ -243,9 +233,9 @@ struct sr_piecewise1 {
     uint32_t count;
     float lo, hi;
     double integral;
-    float *cdf;      // count + 1 values
+    float *f;   // count values
+    float *cdf; // count + 1 values
     float per_unit;  // cells [1/length of the interval's unit]
-    float width;     // of a cell
     uint16_t *guide; // count + 2 cells: where to look for u between guide[i] and guide[i + 2], i = floor(count u); or NULL
 };
 bool sr_piecewise1_build(struct sr_arena *arena, const float *f, uint32_t count, float lo, float hi, struct sr_piecewise1 *d);
@@ -258,20 +248,9 @@ struct sr_piecewise2 {
     double integral;
     struct sr_piecewise1 marginal;     // over y
     struct sr_piecewise1 *conditional; // over x, one a row
-    float *density;                    // of each cell, row by row, exactly as drawn [1]
 };
 bool sr_piecewise2_build(struct sr_arena *arena, const float *f, uint32_t nx, uint32_t ny, struct sr_piecewise2 *d);
 sr_vec2 sr_piecewise2_sample(const struct sr_piecewise2 *d, sr_vec2 u, float *pdf);
-/* The cell, by its place in d->density, of a point in [0,1]^2. */
-static inline size_t sr_piecewise2_cell(const struct sr_piecewise2 *d, sr_vec2 p)
-{
-    float x = p.x * (float)d->nx, y = p.y * (float)d->ny;
-    size_t column = x > 0 ? (size_t)sr_min(x, (float)(d->nx - 1)) : 0, row = y > 0 ? (size_t)sr_min(y, (float)(d->ny - 1)) : 0;
-    return row * d->nx + column;
-}
-static inline float sr_piecewise2_pdf(const struct sr_piecewise2 *d, sr_vec2 p)
-{
-    return p.x >= 0 && p.x <= 1 && p.y >= 0 && p.y <= 1 ? d->density[sr_piecewise2_cell(d, p)] : 0;
-}
+float sr_piecewise2_pdf(const struct sr_piecewise2 *d, sr_vec2 p);
 
 #endif
