@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* An irradiance map: the mean irradiance of each cell of a rectangle's grid.
+/* An irradiance map: the mean irradiance of each cell of a rectangle's grid, or of a shape's texture coordinates.
  *
  *     E_ij = 1/A_ij INTEGRAL over the cell, INTEGRAL over the hemisphere of L cos(theta) dw dA      [lx], [W m^-2]
  *
- * Cell (i, j) is that of p + (i … i+1)/nx u + (j … j+1)/ny v. */
+ * Cell (i, j) is that of p + (i … i+1)/nx u + (j … j+1)/ny v, or where (u, v) = (i … i+1)/nx, (j … j+1)/ny. */
 #include "meter/private.h"
 
 struct map {
@@ -23,7 +23,7 @@ static sr_status prepare(void *self, const struct sr_transform *t, struct sr_are
 {
     struct map *m = self;
     if (m->surface.shape != METER_RECTANGLE)
-        return sr_fail(error, SR_ERROR_INPUT, "a map is made of a rectangle: expected \"string shape\" \"rectangle\"");
+        return sr_fail(error, SR_ERROR_INPUT, "a map is made of a rectangle or of a named shape: expected \"string shape\" \"rectangle\"");
     return meter_surface_prepare(&m->common, &m->surface, t, arena, error);
 }
 
@@ -42,10 +42,21 @@ static bool place(const void *self, sr_vec2 u, struct sr_meter_place *out)
 {
     const struct map *m = self;
     struct sr_point x;
-    if (!(m->common.surface.draw(m->common.surface.self, u, &x) > 0))
+    float density = m->common.surface.draw(m->common.surface.self, u, &x);
+    if (!(density > 0))
         return false;
-    meter_place_on(&x, 1, out); // the mean over all
+    meter_place_on(&x, (float)(1 / ((double)density * m->common.surface.area)), out); // the mean over all
     return true;
+}
+
+static uint32_t cell_of(const void *self, const struct sr_meter_place *place)
+{
+    const struct map *m = self;
+    sr_vec2 uv = place->x.uv;
+    if (!(uv.x >= 0 && uv.x <= 1 && uv.y >= 0 && uv.y <= 1))
+        return UINT32_MAX;
+    int32_t i = (int32_t)(uv.x * (float)m->nx), j = (int32_t)(uv.y * (float)m->ny);
+    return (uint32_t)((j < m->ny ? j : m->ny - 1) * m->nx + (i < m->nx ? i : m->nx - 1));
 }
 
 static void raster(const void *self, uint32_t *width, uint32_t *height)
@@ -84,6 +95,7 @@ const struct sr_meter_model meter_irradiancemap = {
     .kind = SR_KIND_FLUX_DENSITY,
     .params = params,
     .size = sizeof(struct map),
+    .wants_surface = true,
     .prepare = prepare,
     .place = place,
     .response = response,
@@ -92,4 +104,5 @@ const struct sr_meter_model meter_irradiancemap = {
     .extent = extent,
     .raster = raster,
     .place_in = place_in,
+    .cell_of = cell_of,
 };

@@ -61,6 +61,7 @@ struct sr_meter_model {
     /* Maps: how many cells; place draws within the cell. NULL: one reading. */
     void (*raster)(const void *self, uint32_t *width, uint32_t *height);
     bool (*place_in)(const void *self, uint32_t cell, sr_vec2 u, struct sr_meter_place *place);
+    uint32_t (*cell_of)(const void *self, const struct sr_meter_place *place); // on a named shape: by u and v; UINT32_MAX: none
     /* Meters of the far field: they count light that leaves the scene, wherever from, by its direction w. They have no place; the
      * reading is the flux. far: the cell of w; cell: the middle of a cell [deg] and its solid angle [sr]. NULL: others. */
     uint32_t (*far)(const void *self, sr_vec3 w);

@@ -28,6 +28,8 @@ struct measuring {
 /* One sample: adds to channels; what it was in the system that is looked at. false: not finite, and not added. */
 bool measure_sample(const struct measuring *m, uint32_t replicate, uint32_t sample, struct sr_worker *worker, double *channels, double *looked_at,
                     bool *is_hit);
+/* Where that sample is taken; false: nowhere. */
+bool measure_place(const struct measuring *m, uint32_t replicate, uint32_t sample, struct sr_meter_place *at);
 /* Adds samples [begin, end) of a replicate; false: cancelled, the sums are of no use. */
 bool measure_run(const struct measuring *m, uint32_t replicate, uint64_t begin, uint64_t end, struct measure_sums *sums);
 bool measure_is_cancelled(const struct sr_render_job *job);

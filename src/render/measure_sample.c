@@ -154,6 +154,14 @@ bool measure_sample(const struct measuring *m, uint32_t replicate, uint32_t samp
     return true;
 }
 
+bool measure_place(const struct measuring *m, uint32_t replicate, uint32_t sample, struct sr_meter_place *at)
+{
+    const struct sr_render_job *job = m->job;
+    struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, m->stream, UINT32_MAX - m->round, replicate, sample);
+    sr_u4 u = sr_sample4(&sampler, USE_PLACE);
+    return m->meter->model->place(m->meter->self, (sr_vec2){u[0], u[1]}, at);
+}
+
 bool measure_is_cancelled(const struct sr_render_job *job)
 {
     return job->cancel && atomic_load_explicit(job->cancel, memory_order_relaxed);

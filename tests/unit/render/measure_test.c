@@ -212,3 +212,28 @@ TEST(maps_are_their_cells)
     sr_image_free(image);
     bench_free(&b);
 }
+
+TEST(maps_of_shapes_follow_their_texture_coordinates)
+{
+    // a ball of radius 2 around the origin in the light of a distant source from +z, E = 10: 10 cos(theta) outside, by v = theta
+    struct bench b = bench_of("WorldBegin LightSource \"distant\" \"float illuminance\" 10 \"point3 from\" [0 0 1] \"point3 to\" [0 0 0]\n"
+                              "#@ Name \"ball\"\nShape \"sphere\" \"float radius\" 2\n"
+                              "#@ Meter \"irradiancemap\" \"string surface\" \"ball\" \"integer nx\" 3 \"integer ny\" 6\n");
+    struct sr_image *image;
+    struct sr_error error = {0};
+    struct sr_measure_settings s = {.system = SR_PHOTOPIC, .samples = 4096};
+    EXPECT_EQUAL_INT(sr_measure_map(&b.job, &b.scene.meters[0], &s, &image, &error), SR_OK);
+    double total = 0;
+    for (uint32_t j = 0; j < 6; ++j)
+        for (uint32_t i = 0; i < 3; ++i) {
+            // v runs from the pole at -z: mean of max(0, -cos) over the band of theta = pi v
+            double a = pi * j / 6, z0 = cos(a), z1 = cos(a + pi / 6), E = j < 3 ? 0 : 10 * (z1 * z1 - z0 * z0) / 2 / (z0 - z1);
+            const float *pixel = image->floats + sr_image_index(image, i, 5 - j);
+            EXPECT_NEAR(pixel[0], E, 6 * (double)pixel[1] + 1e-5);
+            EXPECT(pixel[1] < 0.05f);
+            total += (double)pixel[0] * (z0 - z1) / 2 / 3;
+        }
+    EXPECT_NEAR(total, 2.5, 0.02); // E / 4 over the whole ball
+    sr_image_free(image);
+    bench_free(&b);
+}
