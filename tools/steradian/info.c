@@ -7,23 +7,25 @@
 #include <string.h>
 
 static const char help[] =
-    "Usage: steradian info FILE [--json] [--plot FIGURE]\n"
+    "Usage: steradian info FILE [--json] [--plot FIGURE] [-o OUT]\n"
     "\n"
     "Tells what a picture (EXR, PNG, JPEG, PFM, HDR, TGA) or a scene (.pbrt, .pbrt.gz, '-': a scene from standard\n"
     "input) contains, without rendering: sizes, channels with their units, attributes; sensor, film, lights, shapes,\n"
     "bounds, memory. Of a luminaire (.ies, .ldt): flux, peak, beam and field angles, efficacy, size, its words.\n"
     "\n"
     "      --json             the same as JSON on standard output\n"
+    "  -o, --outfile FILE     writes a luminaire in the format of the ending, .ies (LM-63-2002) or .ldt\n"
     "      --plot FIGURE      a luminaire's intensity over directions as a polar diagram, .svg or .png\n"
     "  -q, --quiet            no notes about the scene; warnings and errors stay\n"
     "\n"
     "Examples:\n"
     "  steradian info scenes/cornell-box.pbrt\n"
     "  steradian info cornell.exr --json\n"
-    "  steradian info lamp.ies --plot lamp.svg\n";
+    "  steradian info lamp.ies --plot lamp.svg -o lamp.ldt\n";
 
 static const struct option long_options[] = {
     {"json", no_argument, NULL, 'j'},
+    {"outfile", required_argument, NULL, 'o'},
     {"plot", required_argument, NULL, 'p'},
     {"quiet", no_argument, NULL, 'q'},
     {NULL, 0, NULL, 0},
@@ -125,10 +127,13 @@ static int run(int argc, char **argv)
                                         ".dae",  ".xml", ".abc", ".stl", ".rad",  ".mtlx", NULL};
     struct info_arguments a = {0};
     int option, index = 0;
-    while ((option = command_next_option(argc, argv, ":q", long_options, &index)) != -1)
+    while ((option = command_next_option(argc, argv, ":o:q", long_options, &index)) != -1)
         switch (option) {
         case 'j':
             a.json = true;
+            break;
+        case 'o':
+            a.outfile = optarg;
             break;
         case 'p':
             a.plot = optarg;
@@ -149,8 +154,8 @@ static int run(int argc, char **argv)
     if (sr_path_has_ending(a.path, ".ies") || sr_path_has_ending(a.path, ".ldt"))
         return info_luminaire(&a);
 
-    if (a.plot)
-        return command_usage(&command_info, "--plot is for luminaires, .ies or .ldt");
+    if (a.plot || a.outfile)
+        return command_usage(&command_info, "--plot and -o are for luminaires, .ies or .ldt");
     struct sr_error error = {0};
     struct sr_image *image = NULL;
     if (sr_file_exists(a.path) && has_ending_of(a.path, later))

@@ -7,7 +7,8 @@
 
 struct info_arguments {
     const char *path;
-    const char *plot; // NULL, or where a luminaire's figure goes
+    const char *plot;    // NULL, or where a luminaire's figure goes
+    const char *outfile; // NULL, or where it is written again, .ies or .ldt
     bool json, quiet;
 };
 

@@ -92,7 +92,11 @@ int info_luminaire(const struct info_arguments *a)
         struct sr_photometry_report report;
         sr_photometry_report(p, &report);
         const char *name = sr_photometry_word(p, "LUMINAIRE");
-        if (a->plot && plot(a->plot, p, name ? name : a->path, &error) != SR_OK)
+        struct sr_photometry written = *p;
+        written.year = p->format == SR_PHOTOMETRY_LDT || p->year < 2002 ? 2002 : p->year;
+        if (a->outfile)
+            sr_photometry_write(a->outfile, &written, &error);
+        if (error.status || (a->plot && plot(a->plot, p, name ? name : a->path, &error) != SR_OK))
             code = command_fail("info", &error);
         else if (a->json)
             code = print_json(a->path, p, &report);
