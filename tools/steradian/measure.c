@@ -347,6 +347,9 @@ static sr_status write_map(const struct measure_arguments *a, const struct sr_re
     sr_status status = sr_measure_map(job, meter, &s, &image, error);
     if (!image)
         return status;
+    const char *blind = sr_integrator_blind(&job->integrator, job->scene);
+    if (blind)
+        fprintf(stderr, "warning: map \"%s\": %s\n", sr_meter_common(meter)->name, blind);
     struct sr_image_write_options options = {.tone = {.op = SR_TONE_LINEAR, .is_auto = true}};
     if (sr_image_write(a->outfile, image, &options, error) == SR_OK && !a->quiet)
         fprintf(stderr, "note: %u x %u cells of \"%s\" written to %s\n", image->width, image->height, sr_meter_common(meter)->name, a->outfile);
@@ -434,6 +437,9 @@ static int run(int argc, char **argv)
         code = SR_ERROR_RESOURCE;
     else if (a.input != MEASURE_METERS) {
         struct sr_render_job job = measure_job(&a, &scene);
+        const char *blind = sr_integrator_blind(&job.integrator, job.scene);
+        if (blind)
+            fprintf(stderr, "warning: %s: estimator %s: %s\n", a.scene, sr_integrator_label(&job.integrator), blind);
         render_catch_interrupts();
         code = measure_stream(&a, &job);
     } else if (a.balance) {
