@@ -180,6 +180,62 @@ TEST(intervals_of_replicates_cover_closed_forms)
     EXPECT(is_right);
 }
 
+#define UP {0, 0, 1}
+#define DISK "ReverseOrientation Shape \"disk\" \"float height\" 2\n"
+#define SPHERE_AT(x, y, z, r) "Translate " #x " " #y " " #z " Shape \"sphere\" \"float radius\" " #r "\n"
+
+/* Meters with a closed form: what a reading says of itself, over 1000 seeds. */
+TEST(readings_of_meters_cover_closed_forms)
+{
+    static const struct {
+        const char *name, *content;
+        double p[3], n[3], E; // [lx]
+    } cases[] = {
+        {"B1 disk", BLACK GLOW DISK, {0, 0, 0}, UP, 0.628318530718},
+        {"B2 disk, off axis", BLACK GLOW DISK, {1.5, 0, 0}, UP, 0.321335102752},
+        {"B4 disk, tilted", BLACK GLOW DISK, {1.5, 0, 0}, {-0.573576436, 0, 0.819152044}, 0.381493863441},
+        {"B5 sphere, tilted", BLACK GLOW SPHERE_AT(0, 0, 3, 1), {0, 0, 0}, {0.642787610, 0, 0.766044443}, 0.267399954981},
+        {"B6.80 sphere, cut", BLACK GLOW SPHERE_AT(0, 0, 2, 1), {0, 0, 0}, {0.984807753, 0, 0.173648178}, 0.171831975127},
+        {"B6.90 sphere, cut", BLACK GLOW SPHERE_AT(0, 0, 2, 1), {0, 0, 0}, {1, 0, 0}, 0.0905860737061},
+        {"B7 rectangle", BLACK GLOW "ReverseOrientation Shape \"bilinearmesh\" \"point3 P\" [0 0 1 2 0 1 0 1 1 2 1 1]\n", {0, 0, 0}, UP, 0.525824101542},
+        {"B8 square", BLACK GLOW "ReverseOrientation Shape \"bilinearmesh\" \"point3 P\" [-0.5 -0.5 1 0.5 -0.5 1 -0.5 0.5 1 0.5 0.5 1]\n", {0, 0, 0}, UP, 0.752274688454},
+        {"B10 triangle", BLACK GLOW_BOTH "Shape \"trianglemesh\" \"point3 P\" [1 0 1 -1 2 1.5 -1 -1 2] \"integer indices\" [0 1 2]\n", {0, 0, 0}, UP, 0.875254739837},
+        {"B14.15 cap", BLACK GLOW SPHERE_AT(0, 0, 1, 0.258819045), {0, 0, 0}, UP, 0.210446803619},
+        {"D1 sphere, rho 0.5", GREY GLOW_BOTH "Shape \"sphere\" \"float radius\" 2\n", {0.5, 0, -0.5}, UP, 6.28318530718},
+        {"D1 sphere, rho 0.8", "Material \"diffuse\" \"spectrum reflectance\" [360 0.8 830 0.8]\n" GLOW_BOTH "Shape \"sphere\" \"float radius\" 2\n", {0.5, 0, -0.5},
+         UP, 15.7079632679},
+        {"B12.60 sky, grey ground", "LightSource \"infinite\" \"float scale\" 1\n" GREY "Translate 0 0 -1 Shape \"disk\" \"float radius\" 100000\n", {0, 0, 0},
+         {0.866025404, 0, 0.5}, 2.74889357189},
+    };
+    printf("meters, R = 16: coverage of closed forms by Student's 95 %% intervals (too low, too high)\n");
+    bool is_right = true;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        struct world w = world_of("Integrator \"path\" \"integer maxdepth\" 60\nWorldBegin\n%s", cases[i].content);
+        const double *p = cases[i].p, *n = cases[i].n;
+        w.job.threads = 1;
+        printf("  %-24s", cases[i].name);
+        for (int by_nets = 0; by_nets < 2; ++by_nets) {
+            uint32_t seeds = seeds_of(by_nets ? 100 : 1000);
+            double low = 0, high = 0;
+            w.job.sampler = by_nets ? SR_SAMPLER_SOBOL : SR_SAMPLER_INDEPENDENT;
+            for (uint32_t s = 0; s < seeds; ++s) {
+                w.job.seed = 5000 + s;
+                struct sr_irradiance E = sr_render_irradiance(&w.job, (sr_vec3){(float)p[0], (float)p[1], (float)p[2]}, (sr_vec3){(float)n[0], (float)n[1], (float)n[2]}, 32, 16);
+                double reach = sr_student_quantile(0.975, 15) * E.E_v_error + 1e-6 * cases[i].E;
+                low += E.E_v < cases[i].E - reach;
+                high += E.E_v > cases[i].E + reach;
+            }
+            double covered = 1 - (low + high) / seeds, allowance = 4 * sqrt(0.05 * 0.95 / seeds);
+            printf(" %s %6.2f%% (%.2f%%, %.2f%%)", by_nets ? "nets" : "independent", 100 * covered, 100 * low / seeds, 100 * high / seeds);
+            // a meter's u has a floor beside few samples of a net, so that its intervals may be wide
+            is_right = is_right && (is_slow_build() || (covered > (by_nets ? 0.92 : 0.935) - allowance && (by_nets || covered < 0.965 + allowance)));
+        }
+        printf("\n");
+        world_free(&w);
+    }
+    EXPECT(is_right);
+}
+
 TEST(error_bars_of_ordinary_images_are_wide_enough_and_not_too_wide)
 {
     static const uint32_t spp[] = {16, 64, 256};
