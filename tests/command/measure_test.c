@@ -135,6 +135,7 @@ TEST(measure_says_what_is_wrong)
     const struct said *s = run_expecting(0, "measure dark.pbrt");
     EXPECT_SAYS(s->err, "warning: meter \"inside\": no light found in 65536 samples");
     EXPECT_SAYS(s->err, "inside shape number 1");
+    EXPECT_SAYS(s->out, "inside  E_v,o = 0 lx (nothing was found, and no bound is known)");
 }
 
 TEST(measure_when_interrupted_prints_what_there_is)

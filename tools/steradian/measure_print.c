@@ -14,7 +14,10 @@ void measure_print(const struct measure_arguments *a, const struct sr_meter *met
     for (int i = 0; i < SR_SYSTEM_COUNT; ++i) {
         if (!a->systems[i])
             continue;
-        printf("%-*s  %s\n", width, name, sr_quantity_text(measure_symbol(meter, (enum sr_system)i, symbol), &m->value[i], text, sizeof text));
+        struct sr_quantity q = m->value[i];
+        if (m->samples && !m->hits && !(q.upper > 0))
+            q.u = 0, q.degrees = 1; // which the text tells from an uncertainty
+        printf("%-*s  %s\n", width, name, sr_quantity_text(measure_symbol(meter, (enum sr_system)i, symbol), &q, text, sizeof text));
         name = "";
     }
     for (int i = 0; measure_wants_colour(a, meter) && i < SR_COLOUR_COUNT; ++i) {
