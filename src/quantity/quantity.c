@@ -27,6 +27,24 @@ struct sr_quantity sr_quantity_bounded(double largest, double samples, struct sr
     return (struct sr_quantity){.u = NAN, .upper = samples > 0 ? 3 * largest / samples : 0, .unit = unit};
 }
 
+struct sr_quantity sr_quantity_jackknife(const double *rows, uint32_t replicates, uint32_t columns, double (*f)(const double *means), struct sr_unit unit)
+{
+    double sum[8] = {0}, means[8], R = replicates;
+    struct sr_tally left_out = {0};
+    for (uint32_t r = 0; r < replicates; ++r)
+        for (uint32_t c = 0; c < columns; ++c)
+            sum[c] += rows[(size_t)r * columns + c];
+    for (uint32_t r = 0; r < replicates; ++r) {
+        for (uint32_t c = 0; c < columns; ++c)
+            means[c] = (sum[c] - rows[(size_t)r * columns + c]) / (R - 1);
+        sr_tally_add(&left_out, f(means));
+    }
+    for (uint32_t c = 0; c < columns; ++c)
+        means[c] = sum[c] / R;
+    // u^2 = (R - 1)/R SUM (left out - their mean)^2
+    return (struct sr_quantity){.value = R * f(means) - (R - 1) * left_out.mean, .u = sqrt(left_out.m2 * (R - 1) / R), .degrees = R - 1, .unit = unit};
+}
+
 double sr_quantity_expanded(const struct sr_quantity *q, double level)
 {
     double p = 0.5 + level / 2;

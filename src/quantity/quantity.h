@@ -40,6 +40,10 @@ struct sr_quantity sr_quantity_exact(double value, struct sr_unit unit);
 struct sr_quantity sr_quantity_of_tally(const struct sr_tally *replicates, struct sr_unit unit);
 struct sr_quantity sr_quantity_bounded(double largest, double samples, struct sr_unit unit);
 
+/* f of the means of `columns` (at most 8) numbers whose replicates are rows: by the delete-one jackknife, which takes in how they go
+ * together and removes the bias of order 1/replicates that ratios have (Quenouille 1956, Tukey 1958). */
+struct sr_quantity sr_quantity_jackknife(const double *rows, uint32_t replicates, uint32_t columns, double (*f)(const double *means), struct sr_unit unit);
+
 /* Of independent a and b; degrees by Welch & Satterthwaite. Sums of different units are refused: SR_ERROR_USAGE, and *out is
  * not a number. */
 sr_status sr_quantity_add(const struct sr_quantity *a, const struct sr_quantity *b, struct sr_quantity *out, struct sr_error *error);

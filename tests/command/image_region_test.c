@@ -28,6 +28,10 @@ TEST(regions_of_one_picture_and_of_replicates_agree)
     double Y = 0.2126 * json_number_value(value_of(one, "R", "value")) + 0.7152 * json_number_value(value_of(one, "G", "value")) +
                0.0722 * json_number_value(value_of(one, "B", "value"));
     EXPECT_RELATIVE(Y, m1, 1e-3);
+    double ratio = json_number_value(value_of(all, "R/G", "value")), plain = json_number_value(value_of(all, "R", "value")) / json_number_value(value_of(all, "G", "value"));
+    EXPECT_RELATIVE(ratio, plain, 0.01);
+    double u_R = json_number_value(value_of(all, "R", "standard_uncertainty")) / json_number_value(value_of(all, "R", "value"));
+    EXPECT(json_number_value(value_of(all, "R/G", "standard_uncertainty")) < 2 * ratio * u_R); // the same paths: the ratio is known as well as they are
     json_decref(all);
     json_decref(one);
 }

@@ -102,6 +102,27 @@ static struct sr_quantity quantity_of(const struct form *forms, int count, int k
     return (struct sr_quantity){.value = f->mean, .u = sqrt(f->variance), .degrees = f->fourth > 0 ? f->variance * f->variance / f->fourth : INFINITY, .unit = unit};
 }
 
+static double first_over_second(const double *means)
+{
+    return means[0] / means[1];
+}
+
+/* R/G and B/G of replicates: the colour of the light, by the jackknife, for both come from the same paths. */
+static struct sr_quantity ratio_to_green(const struct form *forms, int count, int k)
+{
+    double *rows = calloc((size_t)count, 2 * sizeof *rows);
+    struct sr_quantity q = {.value = NAN, .u = NAN};
+    if (!rows)
+        return q;
+    for (int i = 0; i < count; ++i) {
+        rows[2 * i] = forms[i * FORMS + k].mean;
+        rows[2 * i + 1] = forms[i * FORMS + G].mean;
+    }
+    q = sr_quantity_jackknife(rows, (uint32_t)count, 2, first_over_second, (struct sr_unit){0});
+    free(rows);
+    return q;
+}
+
 int image_print_region(const char *const *files, int count, const struct image_region *region, bool as_json)
 {
     struct sr_error error = {0};
@@ -129,6 +150,14 @@ int image_print_region(const char *const *files, int count, const struct image_r
         json_object_set_new(values, form_names[k], json_pack("{s:o, s:o, s:[i,i], s:o, s:[i,i]}", "mean", command_json_measured(&q), "least",
                                                              command_json_number(f->least), "least_at", (int)f->at_least[0], (int)f->at_least[1], "most",
                                                              command_json_number(f->most), "most_at", (int)f->at_most[0], (int)f->at_most[1]));
+    }
+    for (int k = R; k <= B && count > 1; k += B - R) {
+        struct sr_quantity q = ratio_to_green(forms, count, k);
+        const char *name = k == R ? "R/G" : "B/G";
+        char text[160];
+        if (!as_json)
+            printf("%-4s %s\n", name, sr_quantity_text(NULL, &q, text, sizeof text));
+        json_object_set_new(values, name, json_pack("{s:o}", "mean", command_json_measured(&q)));
     }
     free(forms);
     if (as_json)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Values with uncertainty: sums, products, ratios, refusals, Welch & Satterthwaite, and how they are printed. */
 #include "quantity/quantity.h"
+#include "sample/sample.h"
 #include "test.h"
 
 static const enum sr_kind kinds[] = {SR_KIND_ENERGY, SR_KIND_FLUX, SR_KIND_FLUX_DENSITY, SR_KIND_INTENSITY, SR_KIND_RADIANCE, SR_KIND_EXPOSURE};
@@ -211,4 +212,54 @@ TEST(a_tally_of_replicates_becomes_a_quantity)
     EXPECT_NEAR(sr_quantity_expanded(&q, 0.95), 1.959963985 * q.u, 1e-8);
     t.n = 1;
     EXPECT(isnan(sr_quantity_of_tally(&t, (struct sr_unit){0}).u));
+}
+
+/* ---- the jackknife ---- */
+
+static double first_over_second(const double *means)
+{
+    return means[0] / means[1];
+}
+
+static double first_alone(const double *means)
+{
+    return means[0];
+}
+
+TEST(the_jackknife_of_a_mean_is_the_mean)
+{
+    const double rows[] = {1, 9, 2, 9, 4, 9, 9, 9};
+    struct sr_tally t = {0};
+    for (int r = 0; r < 4; ++r)
+        sr_tally_add(&t, rows[2 * r]);
+    struct sr_quantity q = sr_quantity_jackknife(rows, 4, 2, first_alone, (struct sr_unit){0});
+    EXPECT_RELATIVE(q.value, t.mean, 1e-14);
+    EXPECT_RELATIVE(q.u, sr_tally_standard_error(&t), 1e-14);
+    EXPECT_NEAR(q.degrees, 3, 0);
+}
+
+/* 1 + noise over 1 + the same and other noise: the plain ratio is too large by about its variance, the jackknife is not, and its interval
+ * covers. */
+TEST(the_jackknife_of_a_ratio_is_nearly_unbiased_and_covers)
+{
+    enum { ROUNDS = 4000, R = 16 };
+    struct sr_rng rng = sr_rng_seed(1, 2);
+    struct sr_tally plain = {0}, jackknifed = {0};
+    int covered = 0;
+    for (int k = 0; k < ROUNDS; ++k) {
+        double rows[2 * R], sum[2] = {0};
+        for (int r = 0; r < R; ++r) {
+            double a = sr_normal_quantile((sr_rng_u32(&rng) + 0.5) * 0x1p-32), b = sr_normal_quantile((sr_rng_u32(&rng) + 0.5) * 0x1p-32);
+            rows[2 * r] = 1 + 0.2 * a;
+            rows[2 * r + 1] = 1 + 0.1 * a + 0.4 * b;
+            sum[0] += rows[2 * r], sum[1] += rows[2 * r + 1];
+        }
+        struct sr_quantity q = sr_quantity_jackknife(rows, R, 2, first_over_second, (struct sr_unit){0});
+        sr_tally_add(&plain, sum[0] / sum[1]);
+        sr_tally_add(&jackknifed, q.value);
+        covered += fabs(q.value - 1) <= sr_quantity_expanded(&q, 0.95);
+    }
+    EXPECT(plain.mean > 1 + 4.9 * sr_tally_standard_error(&plain)); // 1 + (0.17 - 0.02) / 16
+    EXPECT(fabs(jackknifed.mean - 1) < 4.9 * sr_tally_standard_error(&jackknifed));
+    EXPECT(covered > 0.935 * ROUNDS && covered < 0.97 * ROUNDS);
 }
