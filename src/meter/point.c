@@ -8,9 +8,9 @@
  *     spherical        E_sph = 1/4 INTEGRAL L dw                      mean over the whole surface of a small sphere
  *     fluence rate     E_o   = INTEGRAL L dw                          the same by the area of its great circle
  *
- * The first five are flux on the body by the area of its curved surface, so that a uniform field of radiance L reads pi L;
- * E_o is what CIE S 017:2020 calls spherical irradiance and fluence rate: 4 pi L. EN 12665:2018, EN 13201-3:2015 (there as
- * sums over luminaires). [lx], [W m^-2] */
+ * The first five are flux on the body by the area of its curved surface, so that a uniform field of radiance L reads pi L; E_o
+ * reads 4 pi L. CIE S 017:2020 calls both spherical irradiance: the words of 17-21-066 are a mean over the sphere, its note 2
+ * divides by the great circle. EN 12665:2018, EN 13201-3:2015 (there as sums over luminaires). [lx], [W m^-2] */
 #include "meter/private.h"
 
 struct point_meter {
@@ -247,7 +247,7 @@ const struct sr_meter_model meter_hemispherical = POINT("hemispherical", "hemisp
                                                         prepare_hemisphere, hemispherical_response, hemispherical_sample, hemispherical_pdf, extent_pi);
 const struct sr_meter_model meter_spherical = POINT("spherical", "mean spherical irradiance", "1/4 ∫ L dω: mean over a small sphere's surface", "sph", point_params, prepare_free,
                                                     spherical_response, sphere_sample, sphere_pdf, extent_pi);
-const struct sr_meter_model meter_fluence = POINT("fluence", "fluence rate (spherical irradiance of CIE S 017)", "∫ L dω", "o", point_params, prepare_free, fluence_response,
+const struct sr_meter_model meter_fluence = POINT("fluence", "fluence rate (spherical irradiance by the area of the great circle)", "∫ L dω", "o", point_params, prepare_free, fluence_response,
                                                   sphere_sample, sphere_pdf, extent_4pi);
 
 struct sr_meter sr_meter_irradiance_at(struct sr_arena *arena, sr_vec3 p, sr_vec3 n)
