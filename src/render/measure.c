@@ -182,7 +182,8 @@ static struct plan plan_next(const struct measuring *m, const struct sr_measurem
     double grown = 8.0 * (double)n;
     bool is_last = need <= 2 * grown || limit <= 2 * grown;
     double next = is_last ? fmin(fmax(need, PILOT), limit) : grown;
-    return (struct plan){whole_net(next) < limit ? whole_net(next) : (uint64_t)fmax(1, limit), is_last};
+    double whole = (double)whole_net(next);
+    return (struct plan){(uint64_t)fmax(1, fmin(whole, limit)), is_last};
 }
 
 static sr_status check(const struct sr_measure_settings *s, struct sr_error *error)
