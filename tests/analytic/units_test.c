@@ -27,7 +27,8 @@ static bool measure(const struct unit_case *c)
 {
     struct world w = world_of("%s", c->world);
     struct sr_irradiance E = sr_render_irradiance(&w.job, (sr_vec3){0, 0, 0}, (sr_vec3){0, 0, 1}, samples(1024), REPLICATES);
-    bool ok = is_right(c->name, "E_v", E.E_v, E.E_v_error, c->E_v) & is_right(c->name, "E_e", E.E_e, E.E_e_error, c->E_e);
+    bool ok = is_right(c->name, "E_v", E.E_v, E.E_v_error, c->E_v);
+    ok = is_right(c->name, "E_e", E.E_e, E.E_e_error, c->E_e) && ok;
     world_free(&w);
     return ok;
 }
