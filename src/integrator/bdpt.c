@@ -21,12 +21,16 @@ struct bdpt {
 };
 
 static const struct sr_param params[] = {
-    {SR_PARAM_INT, "maxdepth", "1", 0, 1e6, 5, offsetof(struct bdpt, max_depth), "most scatterings of a path; 100 at most are followed"},
+    {SR_PARAM_INT, "maxdepth", "1", 0, 1e6, 5, offsetof(struct bdpt, max_depth),
+     "most scatterings of a path; 100 at most are followed"},
     {SR_PARAM_ENUM, "lightsampler", "1", 0, 3, 0, offsetof(struct bdpt, light_sampler), "bvh|power|uniform|exhaustive"},
     {SR_PARAM_ENUM, "heuristic", "1", 0, 1, 0, offsetof(struct bdpt, heuristic), "power|balance"},
-    {SR_PARAM_BOOL, "regularize", "1", 0, 1, 0, offsetof(struct bdpt, regularize), "accepted; never done, for it is biased"},
-    {SR_PARAM_BOOL, "visualizestrategies", "1", 0, 1, 0, offsetof(struct bdpt, visualize_strategies), "accepted; nothing is written"},
-    {SR_PARAM_BOOL, "visualizeweights", "1", 0, 1, 0, offsetof(struct bdpt, visualize_weights), "accepted; nothing is written"},
+    {SR_PARAM_BOOL, "regularize", "1", 0, 1, 0, offsetof(struct bdpt, regularize),
+     "accepted; never done, for it is biased"},
+    {SR_PARAM_BOOL, "visualizestrategies", "1", 0, 1, 0, offsetof(struct bdpt, visualize_strategies),
+     "accepted; nothing is written"},
+    {SR_PARAM_BOOL, "visualizeweights", "1", 0, 1, 0, offsetof(struct bdpt, visualize_weights),
+     "accepted; nothing is written"},
     {.name = NULL},
 };
 
@@ -79,12 +83,13 @@ static float weight(const struct pair *p, const struct step *v, int n, int t, do
 
 static bool is_hittable(struct sr_light light)
 {
-    return !light.model->is_delta && !(light.model == &sr_light_area && ((const struct sr_light_area *)light.self)->is_ghost);
+    return !light.model->is_delta &&
+           !(light.model == &sr_light_area && ((const struct sr_light_area *)light.self)->is_ghost);
 }
 
 /* c for a light vertex as seen from its receiver, wi toward it; s: NULL, or how it has been drawn with pmf. */
-static double receiver_share(const struct pair *p, uint32_t index, const struct sr_vertex *light_vertex, const struct sr_vertex *receiver, sr_vec3 wi,
-                             float pmf, const struct sr_light_sample *s)
+static double receiver_share(const struct pair *p, uint32_t index, const struct sr_vertex *light_vertex,
+                             const struct sr_vertex *receiver, sr_vec3 wi, float pmf, const struct sr_light_sample *s)
 {
     const struct sr_lights *lights = sr_scene_lights(p->scene);
     struct sr_light light = lights->lights[index];
@@ -101,14 +106,16 @@ static double receiver_share(const struct pair *p, uint32_t index, const struct 
 }
 
 /* Densities of a light path's beginning: of the vertex at the light and of its receiver. */
-static void light_densities(const struct pair *p, uint32_t index, struct sr_vertex *light_vertex, const struct sr_vertex *receiver, sr_vec3 wi, float *of_receiver)
+static void light_densities(const struct pair *p, uint32_t index, struct sr_vertex *light_vertex,
+                            const struct sr_vertex *receiver, sr_vec3 wi, float *of_receiver)
 {
     const struct sr_lights *lights = sr_scene_lights(p->scene);
     struct sr_light light = lights->lights[index];
     float pdf_area, pdf_direction, pmf = sr_lights_emit_pmf(lights, index);
     light.model->emit_pdf(light.self, light_vertex->x.n, sr_neg(wi), &pdf_area, &pdf_direction);
     light_vertex->pdf = pmf * (light_vertex->is_outside ? pdf_direction : pdf_area);
-    *of_receiver = light_vertex->is_outside ? pdf_area * sr_vertex_cos(receiver, wi) : sr_vertex_density(pdf_direction, light_vertex, receiver);
+    *of_receiver = light_vertex->is_outside ? pdf_area * sr_vertex_cos(receiver, wi)
+                                            : sr_vertex_density(pdf_direction, light_vertex, receiver);
 }
 
 // density of the vertex before v on its own path, drawn at v by what arrives along `in`
@@ -180,7 +187,8 @@ static void join_light(struct pair *p, const struct sr_sampler *sampler, int t)
     uint32_t index;
     float pmf;
     struct sr_light_sample l;
-    if (!sr_lights_pick(lights, &a->x, u[2], &index, &pmf) || !sr_light_draw(lights->lights[index], &a->x, (sr_vec2){u[0], u[1]}, p->w, &l))
+    if (!sr_lights_pick(lights, &a->x, u[2], &index, &pmf) ||
+        !sr_light_draw(lights->lights[index], &a->x, (sr_vec2){u[0], u[1]}, p->w, &l))
         return;
     sr_vec3 wi = sr_to_local(&a->frame, l.wi);
     sr_spectrum f = sr_bsdf_f(&a->bsdf, a->local_to_last, wi, SR_RADIANCE);
@@ -253,8 +261,9 @@ static void tell(struct pair *p, const struct sr_target *target, const struct sr
     target->add(target->user, view.raster, gain, p->w);
 }
 
-static sr_spectrum bdpt_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
-                          struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
+static sr_spectrum bdpt_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start,
+                          const struct sr_sampler *sampler, struct sr_wavelengths *w, struct sr_hit *first,
+                          struct sr_worker *worker)
 {
     const struct bdpt *m = self;
     const struct sr_target *target = worker->target;
@@ -272,8 +281,17 @@ static sr_spectrum bdpt_L(const void *self, const struct sr_scene *scene, const 
     z[0].x = (struct sr_point){.p = start->ray.o, .time = start->ray.time};
     z[0].is_outside = z[0].is_delta = z[0].is_connectible = false;
     z[0].pdf = z[0].pdf_back = 1;
-    struct sr_walk walk = {.scene = scene, .mode = SR_RADIANCE, .start = start, .sampler = sampler, .first_group = SR_USE_BOUNCE,
-                           .max_scatterings = p.max_depth, .w = w, .worker = worker, .met = meet, .user = &p, .first = first};
+    struct sr_walk walk = {.scene = scene,
+                           .mode = SR_RADIANCE,
+                           .start = start,
+                           .sampler = sampler,
+                           .first_group = SR_USE_BOUNCE,
+                           .max_scatterings = p.max_depth,
+                           .w = w,
+                           .worker = worker,
+                           .met = meet,
+                           .user = &p,
+                           .first = first};
     p.t_count = sr_walk_vertices(&walk, start->ray, SR_ONE, 1, z);
 
     walk.mode = SR_IMPORTANCE;
@@ -302,6 +320,19 @@ static sr_spectrum bdpt_L(const void *self, const struct sr_scene *scene, const 
     return p.L;
 }
 
+static const char *blind(const void *self, const struct sr_scene *scene)
+{
+    (void)scene;
+    return sr_long_paths_missing(((const struct bdpt *)self)->max_depth);
+}
+
 const struct sr_integrator_model sr_integrator_bdpt = {
-    .name = "bdpt", .text = "paths from the sensor and from the lights, joined in all ways, weighed by their densities", .params = params, .size = sizeof(struct bdpt), .L = bdpt_L, .knows_receivers = true, .splats = true,
+    .blind = blind,
+    .name = "bdpt",
+    .text = "paths from the sensor and from the lights, joined in all ways, weighed by their densities",
+    .params = params,
+    .size = sizeof(struct bdpt),
+    .L = bdpt_L,
+    .knows_receivers = true,
+    .splats = true,
 };

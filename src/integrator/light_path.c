@@ -15,13 +15,16 @@ struct light_path {
 };
 
 static const struct sr_param params[] = {
-    {SR_PARAM_INT, "maxdepth", "1", 0, 1e6, 5, offsetof(struct light_path, max_depth), "most scatterings of a path; 100 at most are followed"},
-    {SR_PARAM_ENUM, "lightsampler", "1", 0, 3, 0, offsetof(struct light_path, light_sampler), "bvh|power|uniform|exhaustive"},
+    {SR_PARAM_INT, "maxdepth", "1", 0, 1e6, 5, offsetof(struct light_path, max_depth),
+     "most scatterings of a path; 100 at most are followed"},
+    {SR_PARAM_ENUM, "lightsampler", "1", 0, 3, 0, offsetof(struct light_path, light_sampler),
+     "bvh|power|uniform|exhaustive"},
     {.name = NULL},
 };
 
-static sr_spectrum light_path_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
-                                struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
+static sr_spectrum light_path_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start,
+                                const struct sr_sampler *sampler, struct sr_wavelengths *w, struct sr_hit *first,
+                                struct sr_worker *worker)
 {
     (void)self;
     (void)sampler;
@@ -44,14 +47,20 @@ static sr_spectrum light_path_L(const void *self, const struct sr_scene *scene, 
     return L;
 }
 
-static void light_path_splat(const void *self, const struct sr_scene *scene, struct sr_wavelengths *w, struct sr_worker *worker)
+static void light_path_splat(const void *self, const struct sr_scene *scene, struct sr_wavelengths *w,
+                             struct sr_worker *worker)
 {
     const struct light_path *m = self;
     const struct sr_target *target = worker->target;
     struct sr_vertex v[SR_MAX_SCATTERINGS + 1];
-    struct sr_walk walk = {.scene = scene, .mode = SR_IMPORTANCE, .start = target->middle, .sampler = &target->sampler,
-                           .first_group = SR_USE_LIGHT_PATH + 2, .max_scatterings = m->max_depth < SR_MAX_SCATTERINGS ? m->max_depth : SR_MAX_SCATTERINGS,
-                           .w = w, .worker = worker};
+    struct sr_walk walk = {.scene = scene,
+                           .mode = SR_IMPORTANCE,
+                           .start = target->middle,
+                           .sampler = &target->sampler,
+                           .first_group = SR_USE_LIGHT_PATH + 2,
+                           .max_scatterings = m->max_depth < SR_MAX_SCATTERINGS ? m->max_depth : SR_MAX_SCATTERINGS,
+                           .w = w,
+                           .worker = worker};
     struct sr_light_path path = sr_light_vertices(&walk, v);
     for (int s = 1; s < path.count; ++s) {
         sr_u4 u = sr_sample4(&target->sampler, walk.first_group + 2 * (uint32_t)(s - 1));
@@ -63,7 +72,20 @@ static void light_path_splat(const void *self, const struct sr_scene *scene, str
     }
 }
 
+static const char *blind(const void *self, const struct sr_scene *scene)
+{
+    (void)scene;
+    return sr_long_paths_missing(((const struct light_path *)self)->max_depth);
+}
+
 const struct sr_integrator_model sr_integrator_light_path = {
-    .name = "lightpath", .text = "paths from the lights alone: the adjoint equation", .params = params, .size = sizeof(struct light_path), .L = light_path_L, .knows_receivers = true, .splats = true,
+    .blind = blind,
+    .name = "lightpath",
+    .text = "paths from the lights alone: the adjoint equation",
+    .params = params,
+    .size = sizeof(struct light_path),
+    .L = light_path_L,
+    .knows_receivers = true,
+    .splats = true,
     .splat = light_path_splat,
 };

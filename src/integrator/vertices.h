@@ -10,6 +10,13 @@
 #include "integrator/integrator.h"
 
 enum { SR_MAX_SCATTERINGS = 100 }; // of a path that is kept
+/* What estimators of such paths miss where more is asked for (their hook `blind`). */
+static inline const char *sr_long_paths_missing(int32_t max_depth)
+{
+    return max_depth > SR_MAX_SCATTERINGS ? "it follows at most 100 scatterings of a path, and more are asked for: "
+                                            "what longer paths bring is missing"
+                                          : NULL;
+}
 
 struct sr_vertex {
     struct sr_point x;     // n is 0 at sensors, point lights, and light from outside
@@ -25,24 +32,26 @@ struct sr_vertex {
 };
 
 /* Light met by a sensor's path: the vertices before it, and a place on a surface or (NULL) the direction of escape. */
-typedef void sr_met_light(void *user, int count, const struct sr_hit *hit, sr_vec3 d, float pdf_direction, sr_spectrum beta);
+typedef void sr_met_light(void *user, int count, const struct sr_hit *hit, sr_vec3 d, float pdf_direction,
+                          sr_spectrum beta);
 
 struct sr_walk {
     const struct sr_scene *scene;
-    enum sr_transport mode;             // SR_RADIANCE: from a sensor
-    const struct sr_path_start *start;  // sensor paths: the sensor's ray; light paths: a sensor's, or NULL
+    enum sr_transport mode;            // SR_RADIANCE: from a sensor
+    const struct sr_path_start *start; // sensor paths: the sensor's ray; light paths: a sensor's, or NULL
     const struct sr_sampler *sampler;
-    uint32_t first_group;               // of the random numbers of vertex 1
+    uint32_t first_group; // of the random numbers of vertex 1
     int max_scatterings;
     struct sr_wavelengths *w;
     struct sr_worker *worker;
-    sr_met_light *met;                  // NULL: nobody asks
+    sr_met_light *met; // NULL: nobody asks
     void *user;
-    struct sr_hit *first;               // NULL, or where the first surface is told
+    struct sr_hit *first; // NULL, or where the first surface is told
 };
 
 /* Follows the path that leaves v[0]; returns the number of vertices, v[0] included. pdf_direction: of ray.d, from a light. */
-int sr_walk_vertices(const struct sr_walk *walk, struct sr_ray ray, sr_spectrum beta, float pdf_direction, struct sr_vertex *v);
+int sr_walk_vertices(const struct sr_walk *walk, struct sr_ray ray, sr_spectrum beta, float pdf_direction,
+                     struct sr_vertex *v);
 
 /* A path from the lights. v[1].beta is the flux that arrives at the first surface. */
 struct sr_light_path {
@@ -69,11 +78,13 @@ float sr_vertex_density(float pdf_direction, const struct sr_vertex *from, const
 sr_spectrum sr_vertex_leaving(const struct sr_vertex *v, sr_vec3 out);
 
 /* What a light path tells the target from v, but for visibility and weights; false: nothing. */
-bool sr_vertex_seen(const struct sr_vertex *v, const struct sr_target *target, sr_vec2 u, struct sr_sensor_view *view, sr_spectrum *gain);
-bool sr_vertices_see(const struct sr_scene *scene, const struct sr_vertex *v, sr_vec3 p, sr_vec3 wi, float distance, struct sr_worker *worker);
+bool sr_vertex_seen(const struct sr_vertex *v, const struct sr_target *target, sr_vec2 u, struct sr_sensor_view *view,
+                    sr_spectrum *gain);
+bool sr_vertices_see(const struct sr_scene *scene, const struct sr_vertex *v, sr_vec3 p, sr_vec3 wi, float distance,
+                     struct sr_worker *worker);
 
 /* Radiance of light that is met at once; weighed where the start is a receiver for which lights have been sampled. */
-sr_spectrum sr_met_at_once(const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_hit *hit, sr_vec3 d,
-                           const struct sr_wavelengths *w);
+sr_spectrum sr_met_at_once(const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_hit *hit,
+                           sr_vec3 d, const struct sr_wavelengths *w);
 
 #endif

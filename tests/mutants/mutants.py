@@ -26,8 +26,8 @@ class Mutant:
 
 MUTANTS = [
     # transport
-    Mutant("the cosine at the surface is dropped", "integrator/path.c", "sr_spectrum fL = f * l.L * cos_theta_i;",
-           "sr_spectrum fL = f * l.L; (void)cos_theta_i;", "analytic sources* [A2]"),
+    Mutant("the cosine at the surface is dropped", "integrator/path.c", "sr_spectrum fL = f * l->L * sr_abs_cos_theta(wi);",
+           "sr_spectrum fL = f * l->L;", "analytic sources* [A2]"),
     Mutant("0.2 % of the light is lost at each bounce", "integrator/path.c", "beta *= s.f * (sr_abs_cos_theta(s.wi) / s.pdf);",
            "beta *= s.f * (0.998f * sr_abs_cos_theta(s.wi) / s.pdf);", "analytic enclosures* [D1]"),
     Mutant("one bounce is missing", "integrator/path.c", "if (bounce == path->max_depth)", "if (bounce + 1 >= path->max_depth)", "analytic enclosures* [D1]"),
@@ -81,8 +81,8 @@ MUTANTS = [
     Mutant("a pixel's error bar forgets that it has few blocks", "film/film.c", "((double)(p->blocks - 1) * p->n)", "((double)(4 * p->blocks) * p->n)",
            "analytic *ordinary_images*"),
     # cameras
-    Mutant("a lens is out of focus", "sensor/perspective.c", "d = sr_mad(d, -s->inv_focal, lens);",
-           "d = sr_mad(d, -s->inv_focal, sr_scale(0.99f, lens));", "analytic cameras* [J5]"),
+    Mutant("a lens is out of focus", "sensor/perspective.c", "*d = sr_mad(*d, -s->inv_focal, lens);",
+           "*d = sr_mad(*d, -s->inv_focal, sr_scale(0.99f, lens));", "analytic cameras* [J5]"),
     Mutant("the picture is scaled by the wrong sensitivity", "film/film.c", "(double)s->iso / 100;", "(double)s->iso / 125;", "analytic cameras*"),
     Mutant("an image's pixels are filtered by the cosine to the fourth", "sensor/perspective.c", ".weight = 1,",
            ".weight = sr_sqr(sr_sqr(sr_length(sr_sub(s->d0, s->origin)) > 0 ? 1 / sr_length(d) : 1)),", "analytic cameras*"),
