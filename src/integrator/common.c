@@ -109,6 +109,7 @@ const struct sr_integrator_model *const sr_integrator_models[] = {
     &sr_integrator_light_path,
     &sr_integrator_bdpt,
     &sr_integrator_estimator,
+    &sr_integrator_quadrature,
     NULL,
 };
 

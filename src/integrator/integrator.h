@@ -83,6 +83,13 @@ struct sr_integrator_model {
 extern const struct sr_integrator_model *const sr_integrator_models[]; // ends with NULL
 const struct sr_integrator_model *sr_integrator_model_find(const char *name);
 
+/* The reference without chance: what meters read is integrated by render/quadrature.c. L is not a number. */
+struct sr_quadrature {
+    int32_t max_depth; // 0: light straight from lights; 1: reflected once, for meters that look along a ray
+    float tolerance;   // [1] relative error that each integral aims at
+};
+extern const struct sr_integrator_model sr_integrator_quadrature;
+
 struct sr_integrator {
     const struct sr_integrator_model *model;
     const void *self;

@@ -7,15 +7,15 @@
  * direction the reflectance is one per projected solid angle [1/sr]. R = rho / (that of the perfect diffuser). Uniform
  * radiance within the incident beam. F. E. Nicodemus et al., NBS Monograph 160, 1977.
  *
- * A region is integrated in polar coordinates about its axis, one variable within the other, each adaptively (adaptive.c),
+ * A region is integrated in polar coordinates about its axis, one variable within the other, each adaptively (sr_integrate),
  * so that a kink along any curve is a kink of one variable only. Intervals begin at the mirror's direction, where lobes
  * are, and beside the plane of incidence; on the hemisphere alpha = pi/2 (1 - u^2), so that roots of the cosine become
  * smooth. A lobe far narrower than a thousandth of a radian and far from the mirror's direction may be missed.
  *
  * Delta lobes are summed apart, as sample() shows them. */
-#include "lab/adaptive.h"
 #include "lab/reflect.h"
 #include "lab/twin.h"
+#include "quantity/quantity.h"
 
 #include <string.h>
 
@@ -65,7 +65,7 @@ static void evaluate(struct task *t, const double wo[3], const double wi[3], dou
 struct cap {
     struct task *task;
     const struct lab_region *region;
-    void (*y)(struct task *task, const void *context, const double w[3], struct lab_estimate *out);
+    void (*y)(struct task *task, const void *context, const double w[3], struct sr_estimate *out);
     const void *context;
     double betas[6]; // where intervals of beta begin and end
     int beta_count;
@@ -74,7 +74,7 @@ struct cap {
     bool any_beta; // y is the same for all
 };
 
-static void scale(struct lab_estimate *s, double factor)
+static void scale(struct sr_estimate *s, double factor)
 {
     for (int l = 0; l < SR_LAMBDA_COUNT; ++l) {
         s->value[l] *= factor;
@@ -82,7 +82,7 @@ static void scale(struct lab_estimate *s, double factor)
     }
 }
 
-static void over_beta(void *context, double beta, struct lab_estimate *out)
+static void over_beta(void *context, double beta, struct sr_estimate *out)
 {
     struct cap *c = context;
     double w[3];
@@ -90,14 +90,14 @@ static void over_beta(void *context, double beta, struct lab_estimate *out)
     if (c->region->is_hemisphere)
         w[2] = fmax(w[2], 1e-300);
     if (!(w[2] > 0)) {
-        *out = (struct lab_estimate){0};
+        *out = (struct sr_estimate){0};
         return;
     }
     c->y(c->task, c->context, w, out);
     scale(out, w[2] * sin(c->alpha));
 }
 
-static void over_alpha(void *context, double u, struct lab_estimate *out)
+static void over_alpha(void *context, double u, struct sr_estimate *out)
 {
     struct cap *c = context;
     double slope = 1;
@@ -116,8 +116,8 @@ static void over_alpha(void *context, double u, struct lab_estimate *out)
 }
 
 static void integrate(struct task *t, const struct lab_region *region, const double *other,
-                      void (*y)(struct task *, const void *, const double *, struct lab_estimate *),
-                      const void *context, const double tolerance[SR_LAMBDA_COUNT], struct lab_estimate *out)
+                      void (*y)(struct task *, const void *, const double *, struct sr_estimate *),
+                      const void *context, const double tolerance[SR_LAMBDA_COUNT], struct sr_estimate *out)
 {
     struct cap c = {.task = t, .region = region, .y = y, .context = context, .betas = {0, 2 * M_PI}, .beta_count = 2};
     c.any_beta = t->is_isotropic && !other && region->is_hemisphere && t->from.is_hemisphere && t->to.is_hemisphere;
@@ -150,29 +150,29 @@ static void integrate(struct task *t, const struct lab_region *region, const dou
 
 /* ---- both ---- */
 
-static void plain_f(const double f[SR_LAMBDA_COUNT], struct lab_estimate *out)
+static void plain_f(const double f[SR_LAMBDA_COUNT], struct sr_estimate *out)
 {
-    *out = (struct lab_estimate){0};
+    *out = (struct sr_estimate){0};
     memcpy(out->value, f, sizeof out->value);
 }
-static void toward(struct task *t, const void *wi, const double w[3], struct lab_estimate *out)
+static void toward(struct task *t, const void *wi, const double w[3], struct sr_estimate *out)
 {
     double f[SR_LAMBDA_COUNT];
     evaluate(t, w, wi, f);
     plain_f(f, out);
 }
-static void coming_from(struct task *t, const void *wo, const double w[3], struct lab_estimate *out)
+static void coming_from(struct task *t, const void *wo, const double w[3], struct sr_estimate *out)
 {
     double f[SR_LAMBDA_COUNT];
     evaluate(t, wo, w, f);
     plain_f(f, out);
 }
-static void gathered(struct task *t, const void *unused, const double wi[3], struct lab_estimate *out)
+static void gathered(struct task *t, const void *unused, const double wi[3], struct sr_estimate *out)
 {
     (void)unused;
     integrate(t, &t->to, wi, toward, wi, t->inner_tolerance, out);
 }
-static void received(struct task *t, const void *unused, const double wo[3], struct lab_estimate *out)
+static void received(struct task *t, const void *unused, const double wo[3], struct sr_estimate *out)
 {
     (void)unused;
     integrate(t, &t->from, wo, coming_from, wo, t->inner_tolerance, out);
@@ -202,7 +202,7 @@ static bool is_isotropic(struct task *t)
 }
 
 /* The integral over both regions; over a direction: the value there. */
-static void both(struct task *t, const double tolerance[SR_LAMBDA_COUNT], struct lab_estimate *out)
+static void both(struct task *t, const double tolerance[SR_LAMBDA_COUNT], struct sr_estimate *out)
 {
     if (t->from.is_direction && t->to.is_direction)
         toward(t, t->from.z, t->to.z, out);
@@ -234,7 +234,7 @@ static void tolerances(const double value[SR_LAMBDA_COUNT], double relative, dou
 }
 
 /* To a relative tolerance of a value that is not known before: a coarse one gives the scale, and is corrected. */
-static void to_tolerance(struct task *t, double relative, struct lab_estimate *out)
+static void to_tolerance(struct task *t, double relative, struct sr_estimate *out)
 {
     double tolerance[SR_LAMBDA_COUNT] = {0};
     t->budget = 0;
@@ -311,7 +311,7 @@ static void mirrored(struct task *t, const double w[3], const struct lab_region 
     }
 }
 
-static void mirrored_into(struct task *t, const void *to, const double w[3], struct lab_estimate *out)
+static void mirrored_into(struct task *t, const void *to, const double w[3], struct sr_estimate *out)
 {
     double value[SR_LAMBDA_COUNT];
     ++t->evaluations;
@@ -320,7 +320,7 @@ static void mirrored_into(struct task *t, const void *to, const double w[3], str
     plain_f(value, out);
 }
 
-static void deltas(struct task *t, double relative, struct lab_estimate *out)
+static void deltas(struct task *t, double relative, struct sr_estimate *out)
 {
     double value[SR_LAMBDA_COUNT], tolerance[SR_LAMBDA_COUNT];
     if (t->from.is_direction) {
@@ -367,7 +367,7 @@ static bool is_function(const struct sr_specimen *specimen, sr_spectrum lambda)
 static sr_status run(struct task *t, const struct sr_specimen *specimen, uint32_t lobes, double tolerance,
                      struct sr_reflectance *out, struct sr_error *error)
 {
-    struct lab_estimate sum = {0}, delta = {0};
+    struct sr_estimate sum = {0}, delta = {0};
     t->is_isotropic = is_isotropic(t);
     if (lobes & ~(uint32_t)(SR_LOBE_SPECULAR | SR_LOBE_REFLECTION | SR_LOBE_TRANSMISSION))
         to_tolerance(t, tolerance, &sum);

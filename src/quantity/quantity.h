@@ -58,6 +58,21 @@ sr_status sr_quantity_times(const struct sr_quantity *a, double size, struct sr_
 /* nu = u^4 / sum(u_i^4 / nu_i) of u^2 = sum u_i^2 (GUM G.4.1); infinity where no part has finite degrees. */
 double sr_effective_degrees(const double *u, const double *degrees, size_t count);
 
+/* ---- integrals ---- */
+
+/* A value and a bound of its error, for each wavelength. */
+struct sr_estimate {
+    double value[SR_LAMBDA_COUNT], error[SR_LAMBDA_COUNT]; // [unit] of what is integrated
+};
+/* y(x); its error is what the function itself does not know, as where it is an integral. */
+typedef void sr_integrand(void *context, double x, struct sr_estimate *y);
+
+/* The integral of y between the first and the last of the breaks (ascending, two or more; between them y is smooth as far
+ * as is known), to an absolute error per wavelength (0: any). Intervals are halved where the error is largest, `most` of them at
+ * most, and only while *budget (of evaluations, which the caller counts down) is positive. */
+void sr_integrate(sr_integrand *f, void *context, const double *breaks, int count, const double tolerance[SR_LAMBDA_COUNT], int most,
+                  const int64_t *budget, struct sr_estimate *out);
+
 /* ---- observers ---- */
 
 /* What one watt at lambda [nm] counts in the system: 1, 683 V(lambda) lm/W, 1700.05 V'(lambda) lm/W, lambda / (h c N_A) umol/J. */

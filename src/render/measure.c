@@ -264,9 +264,15 @@ sr_status sr_measure(const struct sr_render_job *job, const struct sr_meter *met
         return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory to measure");
     }
     clear(out, &m);
-    run_rounds(&m, sums, unit_channels, &total, out);
+    if (job->integrator.model == &sr_integrator_quadrature) {
+        status = measure_by_quadrature(&m, out, error);
+    } else {
+        run_rounds(&m, sums, unit_channels, &total, out);
+        measure_remarks(&m, out);
+    }
     sr_arena_free(&scratch);
-    measure_remarks(&m, out);
+    if (status != SR_OK)
+        return status;
     return out->is_complete ? SR_OK : SR_CANCELLED;
 }
 

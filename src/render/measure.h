@@ -28,6 +28,8 @@ struct measuring {
 /* One sample: adds to channels; what it was in the system that is looked at. false: not finite, and not added. */
 bool measure_sample(const struct measuring *m, uint32_t replicate, uint32_t sample, struct sr_worker *worker, double *channels, double *looked_at,
                     bool *is_hit);
+/* Adds what arrives at a path's wavelengths to channels; false: not finite, and not added. */
+bool measure_add(const struct measuring *m, sr_spectrum X, const struct sr_wavelengths *w, double *channels, double *looked_at);
 /* Where that sample is taken; false: nowhere. */
 bool measure_place(const struct measuring *m, uint32_t replicate, uint32_t sample, struct sr_meter_place *at);
 /* Adds samples [begin, end) of a replicate; false: cancelled, the sums are of no use. */
@@ -35,6 +37,9 @@ bool measure_run(const struct measuring *m, uint32_t replicate, uint64_t begin, 
 bool measure_is_cancelled(const struct sr_render_job *job);
 /* Settles what all samples have in common. */
 void measure_prepare(struct measuring *m);
+
+/* The reading without chance, by cubature: fills in all but what has been cleared. */
+sr_status measure_by_quadrature(const struct measuring *m, struct sr_measurement *out, struct sr_error *error);
 
 /* What there is to say about a finished measurement; where nothing has been found, readings become bounds. */
 void measure_remarks(const struct measuring *m, struct sr_measurement *out);

@@ -106,6 +106,8 @@ sr_status sr_measure_map(const struct sr_render_job *job, const struct sr_meter 
     *image = NULL;
     if (!meter->model->raster || meter->model->far)
         return sr_fail(error, SR_ERROR_USAGE, "a meter of kind %s makes no map", meter->model->name);
+    if (job->integrator.model == &sr_integrator_quadrature)
+        return sr_fail(error, SR_ERROR_USAGE, "the estimator quadrature reads meters at a point, and a map is a mean over cells; use path");
     if (s.replicates < 2 || s.replicates > MOST_REPLICATES)
         return sr_fail(error, SR_ERROR_USAGE, "%u replicates: expected 2 to %d", (unsigned)s.replicates, MOST_REPLICATES);
     uint32_t width, height;

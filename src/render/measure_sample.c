@@ -124,6 +124,27 @@ static sr_spectrum estimate(const struct measuring *m, const struct sr_sampler *
     return sum * at.weight;
 }
 
+bool measure_add(const struct measuring *m, sr_spectrum X, const struct sr_wavelengths *w, double *channels, double *looked_at)
+{
+    const struct sr_lambda_range range = m->job->lambda;
+    const struct sr_spectrometer *spectrometer = &m->settings->spectrometer;
+    if (spectrometer->count) { // its bins may reach beyond the wavelengths that all else is summed over
+        sr_spectrometer_add(spectrometer, X, w, channels + MEASURE_BINS);
+        X = sr_spectrum_select((w->lambda >= range.lo) & (w->lambda <= range.hi), X, SR_BLACK);
+    }
+    double readings[SR_SYSTEM_COUNT];
+    sr_observe(X, w, readings);
+    struct sr_xyz xyz = sr_spectrum_to_xyz(X, w);
+    *looked_at = fabs(readings[m->settings->system]);
+    if (!isfinite(*looked_at))
+        return false;
+    for (int i = 0; i < SR_SYSTEM_COUNT; ++i)
+        channels[i] += readings[i];
+    channels[MEASURE_X] += (double)xyz.x;
+    channels[MEASURE_Z] += (double)xyz.z;
+    return true;
+}
+
 bool measure_sample(const struct measuring *m, uint32_t replicate, uint32_t sample, struct sr_worker *worker, double *channels, double *looked_at, bool *is_hit)
 {
     const struct sr_render_job *job = m->job;
@@ -136,22 +157,7 @@ bool measure_sample(const struct measuring *m, uint32_t replicate, uint32_t samp
         return true;
     if (!sr_spectrum_is_finite(X))
         return false;
-    const struct sr_spectrometer *spectrometer = &m->settings->spectrometer;
-    if (spectrometer->count) { // its bins may reach beyond the wavelengths that all else is summed over
-        sr_spectrometer_add(spectrometer, X, &w, channels + MEASURE_BINS);
-        X = sr_spectrum_select((w.lambda >= job->lambda.lo) & (w.lambda <= job->lambda.hi), X, SR_BLACK);
-    }
-    double readings[SR_SYSTEM_COUNT];
-    sr_observe(X, &w, readings);
-    struct sr_xyz xyz = sr_spectrum_to_xyz(X, &w);
-    *looked_at = fabs(readings[m->settings->system]);
-    if (!isfinite(*looked_at))
-        return false;
-    for (int i = 0; i < SR_SYSTEM_COUNT; ++i)
-        channels[i] += readings[i];
-    channels[MEASURE_X] += (double)xyz.x;
-    channels[MEASURE_Z] += (double)xyz.z;
-    return true;
+    return measure_add(m, X, &w, channels, looked_at);
 }
 
 bool measure_place(const struct measuring *m, uint32_t replicate, uint32_t sample, struct sr_meter_place *at)

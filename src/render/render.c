@@ -377,6 +377,9 @@ sr_status sr_render(const struct sr_render_job *job, struct sr_film **film, stru
     *report = (struct sr_render_report){0};
     if (job->spp < 1)
         return sr_fail(error, SR_ERROR_USAGE, "at least one sample per pixel is needed");
+    if (job->integrator.model == &sr_integrator_quadrature)
+        return sr_fail(error, SR_ERROR_USAGE, "the estimator quadrature reads meters and makes no pictures: a pixel is an integral of more than two "
+                                              "dimensions; use path");
     bool splats = job->integrator.model->splats && job->sensor.model->connect;
     if (job->adaptive.is_on && splats)
         return sr_fail(error, SR_ERROR_USAGE, "the estimator %s brings light to the whole picture at a time, and cannot spend samples on some pixels alone",

@@ -5,7 +5,7 @@
  *     E(theta) = INTEGRAL f cos theta dw    [1]    at 0, 30, 60 and 80 deg
  *
  * A row names a specimen, the azimuth of the known direction and the wavelength; digits: how many the source prints. */
-#include "lab/adaptive.h"
+#include "quantity/quantity.h"
 #include "lab/reflect.h"
 #include "specimens.h"
 
@@ -270,17 +270,17 @@ struct below {
     int64_t budget;
 };
 
-static void at_phi(void *context, double phi, struct lab_estimate *y)
+static void at_phi(void *context, double phi, struct sr_estimate *y)
 {
     struct below *b = context;
     const double wi[3] = {sin(b->theta) * cos(phi), sin(b->theta) * sin(phi), -cos(b->theta)};
-    *y = (struct lab_estimate){0};
+    *y = (struct sr_estimate){0};
     sr_twin_f(b->twin, b->wo, wi, SR_IMPORTANCE, y->value);
     for (int l = 0; l < SR_LAMBDA_COUNT; ++l)
         y->value[l] *= cos(b->theta) * sin(b->theta);
 }
 
-static void at_theta(void *context, double t, struct lab_estimate *y)
+static void at_theta(void *context, double t, struct sr_estimate *y)
 {
     struct below *b = context;
     double tolerance[SR_LAMBDA_COUNT], breaks[3] = {b->phi, b->phi + PI, b->phi + 2 * PI};
@@ -310,7 +310,7 @@ TEST(transmittances_of_rough_glass)
             double breaks[3] = {0, refracted, PI / 2}, tolerance[SR_LAMBDA_COUNT];
             for (int l = 0; l < SR_LAMBDA_COUNT; ++l)
                 tolerance[l] = 2e-7;
-            struct lab_estimate T;
+            struct sr_estimate T;
             sr_integrate(at_theta, &b, breaks, 3, tolerance, 200, &b.budget, &T);
             if (fabs(T.value[0] - row->T[k]) > 1e-6 * row->T[k] + 1.1 * pow(10, -row->digits)) {
                 printf("%s at %g deg: T = %.9f, should be %.6f\n", words, theta[k], T.value[0], row->T[k]);

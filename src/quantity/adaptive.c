@@ -5,7 +5,7 @@
  *
  * The error is the usual estimate of QUADPACK (R. Piessens et al. 1983), never below the rounding; e itself bounds the
  * error of the 7 nodes, not of the 15. The errors that values bring along are integrated and added. A. Kronrod 1965. */
-#include "lab/adaptive.h"
+#include "quantity/quantity.h"
 
 enum { NODES = 8, MOST = 400 };
 
@@ -23,7 +23,7 @@ static const double gauss[NODES] = {0, 0.129484966168869693270611432679082, 0, 0
 struct interval {
     double a, b;
     double key; // the largest error over its tolerance
-    struct lab_estimate sum;
+    struct sr_estimate sum;
     double carried[SR_LAMBDA_COUNT]; // of the errors in sum: those of the values
 };
 
@@ -35,10 +35,10 @@ static double estimate(double rough, double fine, double deviation, double magni
     return fmax(e, 1e-15 * magnitude);
 }
 
-static void measure(lab_integrand *f, void *context, const double *tolerance, struct interval *v)
+static void measure(sr_integrand *f, void *context, const double *tolerance, struct interval *v)
 {
     double half = 0.5 * (v->b - v->a), centre = 0.5 * (v->a + v->b);
-    struct lab_estimate y[2 * NODES - 1];
+    struct sr_estimate y[2 * NODES - 1];
     double weight[2 * NODES - 1];
     for (int k = 0; k < NODES; ++k) {
         weight[k] = weight[2 * NODES - 2 - k] = kronrod[k];
@@ -66,8 +66,8 @@ static void measure(lab_integrand *f, void *context, const double *tolerance, st
     }
 }
 
-void sr_integrate(lab_integrand *f, void *context, const double *breaks, int count,
-                  const double tolerance[SR_LAMBDA_COUNT], int most, const int64_t *budget, struct lab_estimate *out)
+void sr_integrate(sr_integrand *f, void *context, const double *breaks, int count,
+                  const double tolerance[SR_LAMBDA_COUNT], int most, const int64_t *budget, struct sr_estimate *out)
 {
     struct interval v[MOST];
     int n = 0;
@@ -92,7 +92,7 @@ void sr_integrate(lab_integrand *f, void *context, const double *breaks, int cou
         measure(f, context, tolerance, &v[worst]);
         measure(f, context, tolerance, &v[n++]);
     }
-    *out = (struct lab_estimate){0};
+    *out = (struct sr_estimate){0};
     for (int i = 0; i < n; ++i)
         for (int l = 0; l < SR_LAMBDA_COUNT; ++l) {
             out->value[l] += v[i].sum.value[l];
