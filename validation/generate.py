@@ -158,6 +158,13 @@ def rectangle(name, ident, x0, x1, y0, y1, h, luminance=1.0):
                f'{v(x0, y0, h, x1, y0, h, x0, y1, h, x1, y1, h)}\n', luminance * corners(x0, x1, y0, y1, h))
 
 
+def screened(h, screen):
+    """A square over the receiver, of which a screen at the height `screen` hides the half x > 0."""
+    irradiance(f"screened_{screen:g}", "CIE 171 5.7", f"square of 1 m and 1 cd/m^2, {h:g} m above, half of it behind a screen {screen:g} m above", "Hamilton & Morgan 1952",
+               BLACK + f'Shape "bilinearmesh" "point3 P" {v(0, -9, screen, 9, -9, screen, 0, 9, screen, 9, 9, screen)}\n' + GLOW +
+               f'ReverseOrientation Shape "bilinearmesh" "point3 P" {v(-0.5, -0.5, h, 0.5, -0.5, h, -0.5, 0.5, h, 0.5, 0.5, h)}\n', corners(-0.5, 0, -0.5, 0.5, h))
+
+
 def triangle():
     corners3 = [(1, 0, 1), (-1, 2, 1.5), (-1, -1, 2)]
     E = 0
@@ -444,6 +451,8 @@ def build():
     rectangle("rectangle_centre", "B8", -0.5, 0.5, -0.5, 0.5, 1)
     for d in (0, 1, 2):
         rectangle(f"rectangle_grid_{d}", "CIE 171 5.3", d - 0.5, d + 0.5, -1, 1, 3, luminance=1000)
+    for screen in (0.25, 0.75):
+        screened(1, screen)
     triangle()
     for tilt in (0, 30, 60, 90, 120):
         dome(tilt)

@@ -38,7 +38,7 @@ MUTANTS = [
            "analytic sources* [B8]"),
     Mutant("who survives the lot does not carry the others' share", "integrator/path.c", "beta *= 1 / survive;", ";", "analytic enclosures* [D1]"),
     Mutant("shadows end at half of the way to the lamp", "scene/raycast.c", ".d = sr_sub(s->p, o), .time = x->time, .t_max = SHADOW_SHARE}",
-           ".d = sr_sub(s->p, o), .time = x->time, .t_max = SHADOW_SHARE / 2}", "validate roof_uniform"),
+           ".d = sr_sub(s->p, o), .time = x->time, .t_max = SHADOW_SHARE / 2}", "validate screened_0.75"),
     Mutant("light from below the horizon is not cut off", "bsdf/bsdf.h", "bool is_reflected = sr_same_hemisphere(wo, wi);", "bool is_reflected = true;",
            "analytic sources* [B6]"),
     # lights
