@@ -59,7 +59,8 @@ MUTANTS = [
     # matter
     Mutant("a microfacet's density lacks its Jacobian 1/4", "bsdf/microfacet.h", "*pdf = D / (2 * (zo + so));", "*pdf = 2 * D / (zo + so);", "family bsdf_sampler_follows*"),
     Mutant("rough glass does not compress radiance", "bsdf/facets_interface.h", "if (mode == SR_RADIANCE && i->transmits)",
-           "if (mode == SR_IMPORTANCE && i->transmits)", "family *adjoint"),
+           "if (mode == SR_IMPORTANCE && i->transmits)", "family bsdf_functions_agree*"),
+    Mutant("drawn glass does not compress radiance", "bsdf/dielectric.c", "value /= i.eta * i.eta;", ";", "family bsdf_functions_agree*"),
     Mutant("refraction bends the wrong way", "bsdf/fresnel.c", "float cos_t = sqrtf(g2) / eta;", "float cos_t = sqrtf(g2) * eta;", "unit_bsdf refraction_obeys_snell"),
     Mutant("Fresnel's reflectance is that of one polarisation", "bsdf/microfacet.h", "return (r_p * r_p + r_s * r_s) * 0.5f;", "return r_s * r_s;",
            "unit_bsdf fresnel_dielectric*"),
@@ -84,8 +85,8 @@ MUTANTS = [
     Mutant("a lens is out of focus", "sensor/perspective.c", "*d = sr_mad(*d, -s->inv_focal, lens);",
            "*d = sr_mad(*d, -s->inv_focal, sr_scale(0.99f, lens));", "analytic cameras* [J5]"),
     Mutant("the picture is scaled by the wrong sensitivity", "film/film.c", "(double)s->iso / 100;", "(double)s->iso / 125;", "analytic cameras*"),
-    Mutant("an image's pixels are filtered by the cosine to the fourth", "sensor/perspective.c", ".weight = 1,",
-           ".weight = sr_sqr(sr_sqr(sr_length(sr_sub(s->d0, s->origin)) > 0 ? 1 / sr_length(d) : 1)),", "analytic cameras*"),
+    Mutant("pixels are darker by the cosine to the fourth", "sensor/perspective.c", ".t_max = INFINITY}, .weight = 1};",
+           ".t_max = INFINITY}, .weight = sr_sqr(sr_sqr(sr_dot(sr_normalize(d), ((const struct perspective *)self)->n)))};", "analytic cameras*"),
 ]
 
 
