@@ -74,7 +74,8 @@ static void light_path_splat(const void *self, const struct sr_scene *scene, str
 
 static const char *blind(const void *self, const struct sr_scene *scene)
 {
-    (void)scene;
+    if (sr_scene_has_mirrors(scene))
+        return "what is seen in a mirror or through clear glass is missing: paths from the lights do not lead from there to the sensor";
     return sr_long_paths_missing(((const struct light_path *)self)->max_depth);
 }
 

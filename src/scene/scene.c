@@ -231,6 +231,24 @@ struct sr_box sr_scene_bounds(const struct sr_scene *scene)
     return scene->bounds;
 }
 
+bool sr_scene_has_mirrors(const struct sr_scene *scene)
+{
+    const struct sr_material *const *list = scene->material_list.data;
+    struct sr_wavelengths w = sr_wavelengths_sample((struct sr_lambda_range){SR_LAMBDA_MIN, SR_LAMBDA_MAX}, 0.5f);
+    sr_vec3 up = {0, 0, 1};
+    for (size_t i = 0; i < scene->material_list.count; ++i) {
+        struct sr_point x = {.n = up, .ns = up, .dpdu = {1, 0, 0}, .dpdv = {0, 1, 0}, .dpdus = {1, 0, 0}};
+        struct sr_bsdf bsdf = {0};
+        struct sr_frame frame;
+        if (!list[i])
+            continue;
+        sr_material_shade(list[i], &x, up, 0.5f, 1, &w, &bsdf, &frame);
+        if (bsdf.model && sr_bsdf_lobes(&bsdf) & SR_LOBE_SPECULAR)
+            return true;
+    }
+    return false;
+}
+
 struct sr_scene_counts sr_scene_count(const struct sr_scene *scene)
 {
     return scene->counts;

@@ -84,6 +84,7 @@ uint64_t sr_scene_replay(const struct sr_scene *scene, const struct sr_ray_log *
 
 const struct sr_lights *sr_scene_lights(const struct sr_scene *scene);
 bool sr_scene_has_footprints(const struct sr_scene *scene); // whether any material looks at them
+bool sr_scene_has_mirrors(const struct sr_scene *scene); // whether any material, seen straight on, is a mirror or clear glass
 struct sr_box sr_scene_bounds(const struct sr_scene *scene);
 
 struct sr_scene_counts {
