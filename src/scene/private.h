@@ -12,6 +12,7 @@ struct placed_shape {
     struct sr_shape shape;
     const struct sr_material *material;
     struct sr_texture alpha;
+    const struct sr_media *media;
     uint32_t first_light;     // SR_NO_LIGHT: dark
     uint32_t per_light;       // primitives that make one light
     uint32_t number;          // from 1, in the order of description

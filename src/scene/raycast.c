@@ -59,6 +59,7 @@ static inline bool raycast(const struct sr_scene *scene, const struct sr_ray *ra
         to_world(&hit->point, &instance->object_to_world);
     hit->t = rh.ray.tfar;
     hit->material = s->material;
+    hit->media = s->media;
     hit->light = s->first_light == SR_NO_LIGHT ? SR_NO_LIGHT : s->first_light + (s->per_light == 2 ? rh.hit.primID / 2 : rh.hit.primID);
     hit->object = s->number;
     hit->material_number = s->material_number;

@@ -167,6 +167,7 @@ static void place_shapes(struct sr_scene *scene, struct object *object, bool is_
             continue;
         object->shapes[object->shape_count++] = (struct placed_shape){
             .shape = def->shape, .material = material_number ? def->material : NULL, .first_light = first_light, .per_light = per_light, .number = number,
+            .media = def->media,
             .alpha = def->alpha.model && !(sr_texture_is_constant_float(def->alpha, &alpha) && alpha >= 1) ? def->alpha : (struct sr_texture){0},
             .material_number = material_number, .has_footprint = material_number && sr_material_has_footprint(def->material), .is_mesh = is_mesh,
             .lambert = sr_material_lambert(material_number ? def->material : NULL),

@@ -8,6 +8,7 @@
 
 #include "light/light.h"
 #include "material/material.h"
+#include "medium/medium.h"
 #include "shape/shape.h"
 
 struct sr_scene;
@@ -16,12 +17,18 @@ typedef struct sr_object_id {
     uint32_t index1; // 0: the world itself
 } sr_object_id;
 
+/* What is on the two sides of a surface where media meet; a medium without model is vacuum. */
+struct sr_media {
+    struct sr_medium inside, outside; // outside is where n points to
+};
+
 struct sr_shape_def {
     struct sr_shape shape;              // prepared
     const struct sr_material *material; // NULL or without model: interface
     struct sr_texture alpha;            // float texture [1], or none: opaque
     const struct sr_light_emission *emission; // prepared; NULL: dark
     sr_object_id object;                // the object that it belongs to; none: the world
+    const struct sr_media *media;       // NULL: the same medium on both sides
 };
 
 struct sr_scene *sr_scene_create(void); // NULL: no memory
@@ -42,6 +49,7 @@ struct sr_hit {
     struct sr_point point;
     float t;                            // [m] along the ray
     const struct sr_material *material; // NULL: interface
+    const struct sr_media *media;       // NULL: the ray's medium goes on behind the surface
     const struct sr_sigmoid *lambert;   // its reflectance, if it is plain and Lambert's; or NULL
     uint32_t light;                     // index of the area light here, or SR_NO_LIGHT
     uint32_t object;                    // number of the shape, from 1
