@@ -39,7 +39,7 @@ void sr_pbrt_description_free(struct sr_pbrt_description *d)
                                  &d->named_materials, &d->textures, &d->media,      &d->lights,
                                  &d->area_lights,     &d->shapes,   &d->objects,    &d->instances,
                                  &d->meters,
-                                 &d->uncertainties};
+                                 &d->uncertainties,       &d->memory_files};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; ++i)
         sr_array_free(arrays[i]);
     struct sr_pbrt_names *names[] = {&d->object_names, &d->material_names, &d->medium_names, &d->float_textures,
@@ -50,11 +50,46 @@ void sr_pbrt_description_free(struct sr_pbrt_description *d)
     *d = (struct sr_pbrt_description){0};
 }
 
+static struct sr_pbrt_entity default_entity(const char *directive, const char *model)
+{
+    return (struct sr_pbrt_entity){.directive = directive, .model = model, .space = SR_SRGB};
+}
+
+bool sr_pbrt_description_start(struct sr_pbrt_description *d, struct sr_arena *data, struct sr_log *log)
+{
+    *d = (struct sr_pbrt_description){.data = data, .log = log, .transform_end_time = 1, .film_space = SR_SRGB};
+    d->camera = default_entity("Camera", "perspective");
+    d->film = default_entity("Film", "rgb");
+    d->sampler = default_entity("Sampler", "zsobol");
+    d->filter = default_entity("PixelFilter", "gaussian");
+    d->integrator = default_entity("Integrator", "volpath");
+    d->accelerator = default_entity("Accelerator", "bvh");
+    struct sr_pbrt_entity *material = sr_array_push(&d->materials, sizeof *material);
+    struct sr_pbrt_transform *transform = sr_array_push(&d->transforms, sizeof *transform);
+    if (!material || !transform)
+        return false;
+    *material = default_entity("Material", "diffuse");
+    transform->start = transform->end = sr_transform_identity();
+    return true;
+}
+
+const struct sr_pbrt_memory_file *sr_pbrt_memory_file(const struct sr_pbrt_description *d, const char *name)
+{
+    for (size_t i = 0; i < d->memory_files.count; ++i) {
+        const struct sr_pbrt_memory_file *f = SR_PBRT_AT(d->memory_files, struct sr_pbrt_memory_file, i);
+        if (strcmp(f->name, name) == 0)
+            return f;
+    }
+    return NULL;
+}
+
 /* "file:line:column: sentence (included from …)" */
 static void compose(const struct sr_pbrt_description *d, struct sr_location where, char *text, size_t size,
                     const char *format, va_list arguments)
 {
-    int n = where.file ? snprintf(text, size, "%s:%d:%d: ", where.file, where.line, where.column) : 0;
+    int n = !where.file  ? 0
+            : where.line ? snprintf(text, size, "%s:%d:%d: ", where.file, where.line, where.column)
+                         : snprintf(text, size, "%s: ", where.file);
     if (n < 0 || (size_t)n >= size)
         return;
     int m = vsnprintf(text + n, size - (size_t)n, format, arguments);

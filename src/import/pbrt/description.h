@@ -112,6 +112,13 @@ struct sr_pbrt_file {
     uint32_t is_open;        // being read now
 };
 
+/* A file that lies in memory, such as an image inside of a GLB file; asked for by its name. */
+struct sr_pbrt_memory_file {
+    const char *name;
+    const void *data; // kept by one of the arenas
+    size_t size;
+};
+
 struct sr_pbrt_option {
     const char *name; // lower case, without - and _
     struct sr_pbrt_param value;
@@ -155,6 +162,7 @@ struct sr_pbrt_description {
     struct sr_array instances;       // struct sr_pbrt_instance
     struct sr_array meters;          // struct sr_pbrt_entity
     struct sr_array uncertainties;   // struct sr_pbrt_entity
+    struct sr_array memory_files;    // struct sr_pbrt_memory_file
 
     struct sr_pbrt_names object_names, material_names, medium_names, float_textures, spectrum_textures;
 
@@ -170,6 +178,10 @@ sr_status sr_pbrt_read(const char *path, struct sr_arena *data, struct sr_log *l
 sr_status sr_pbrt_read_text(const char *label, const char *text, size_t size, struct sr_arena *data, struct sr_log *log,
                             struct sr_pbrt_description *out, struct sr_error *error);
 void sr_pbrt_description_free(struct sr_pbrt_description *d);
+/* An empty scene with pbrt's defaults: materials[0] is what shapes wear without a word, transforms[0] is none at all. false: no memory. */
+bool sr_pbrt_description_start(struct sr_pbrt_description *d, struct sr_arena *data, struct sr_log *log);
+/* NULL: there is none of that name. */
+const struct sr_pbrt_memory_file *sr_pbrt_memory_file(const struct sr_pbrt_description *d, const char *name);
 
 #define SR_PBRT_AT(array, type, i) (&((type *)(array).data)[i])
 
@@ -181,7 +193,7 @@ uint64_t sr_pbrt_hash(uint64_t hash, const void *data, size_t size); // of data,
 void *sr_pbrt_words(struct sr_pbrt_description *d, size_t size);
 const char *sr_pbrt_text(struct sr_pbrt_description *d, const char *text, size_t length); // a copy, ended by NUL
 
-/* "file:line:column: " and the sentence, and from where the file was included. */
+/* "file:line:column: " (without line 0) and the sentence, and from where the file was included. */
 SR_PRINTF(5, 6)
 sr_status sr_pbrt_fail(const struct sr_pbrt_description *d, struct sr_location where, struct sr_error *error,
                        sr_status status, const char *format, ...);

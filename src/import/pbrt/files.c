@@ -4,9 +4,11 @@
 
 #include <string.h>
 
-/* From the folder of the first scene file; where nothing is there, from the folder of the file that names it. */
+/* A file in memory has its name as it is. From the folder of the first scene file; where nothing is there, from the folder of the file that names it. */
 char *sr_pbrt_resolve(struct sr_pbrt_build *b, struct sr_arena *arena, const char *name, struct sr_location where)
 {
+    if (sr_pbrt_memory_file(b->d, name))
+        return sr_arena_string(arena, name);
     char *path = sr_path_beside(arena, b->main_path, name);
     if (!path || !where.file || sr_file_exists(path))
         return path;

@@ -78,6 +78,7 @@ static sr_status make_dense(struct sr_pbrt_build *b, struct sr_pbrt_image *i)
 
 struct job {
     const char *path;
+    const struct sr_pbrt_memory_file *memory; // or NULL: on disk
     bool is_linear;
     struct sr_location where;
     struct sr_image *image;
@@ -88,13 +89,14 @@ struct job {
 static void read_image(void *context, uint64_t k)
 {
     struct job *j = &((struct job *)context)[k];
-    char *data;
-    size_t size;
-    if (sr_file_read(j->path, (size_t)16 << 30, &data, &size, &j->error) != SR_OK)
+    char *file = NULL;
+    size_t size = j->memory ? j->memory->size : 0;
+    if (!j->memory && sr_file_read(j->path, (size_t)16 << 30, &file, &size, &j->error) != SR_OK)
         return;
+    const void *data = j->memory ? j->memory->data : file;
     j->hash = sr_pbrt_hash(0, data, size);
     sr_image_decode(j->path, data, size, j->is_linear ? SR_IMAGE_LINEAR : SR_IMAGE_SRGB, &j->image, &j->error);
-    sr_free(data);
+    sr_free(file);
 }
 
 static sr_status keep(struct sr_pbrt_build *b, struct job *j)
@@ -135,7 +137,10 @@ sr_status sr_pbrt_images_read_ahead(struct sr_pbrt_build *b)
         for (size_t i = 0; i < count && !is_known; ++i)
             is_known = strcmp(jobs[i].path, late[k].path) == 0 && jobs[i].is_linear == (late[k].gamma == 1);
         if (!is_known)
-            jobs[count++] = (struct job){.path = late[k].path, .is_linear = late[k].gamma == 1, .where = late[k].where};
+            jobs[count++] = (struct job){.path = late[k].path,
+                                         .memory = sr_pbrt_memory_file(b->d, late[k].path),
+                                         .is_linear = late[k].gamma == 1,
+                                         .where = late[k].where};
     }
     sr_parallel_for(b->threads, count, read_image, jobs);
     sr_status status = SR_OK;
@@ -162,7 +167,10 @@ sr_status sr_pbrt_texels(struct sr_pbrt_build *b, const char *path, struct sr_lo
 {
     struct sr_pbrt_image *i = find(b, path, gamma == 1);
     if (!i) {
-        struct job j = {.path = path, .is_linear = gamma == 1, .where = where};
+        struct job j = {.path = path,
+                        .memory = sr_pbrt_memory_file(b->d, path),
+                        .is_linear = gamma == 1,
+                        .where = where};
         read_image(&j, 0);
         sr_status status = keep(b, &j);
         if (status != SR_OK)

@@ -274,30 +274,13 @@ sr_status sr_pbrt_include(struct sr_pbrt_parser *p, const char *name)
 
 /* ---- the whole ---- */
 
-static struct sr_pbrt_entity default_entity(const char *directive, const char *model)
-{
-    return (struct sr_pbrt_entity){.directive = directive, .model = model, .space = SR_SRGB};
-}
-
 static sr_status start(struct sr_pbrt_parser *p, const char *path, struct sr_arena *data, struct sr_log *log,
                        struct sr_pbrt_description *d, struct sr_error *error)
 {
-    *d = (struct sr_pbrt_description){.data = data, .log = log, .transform_end_time = 1, .film_space = SR_SRGB};
-    d->camera = default_entity("Camera", "perspective");
-    d->film = default_entity("Film", "rgb");
-    d->sampler = default_entity("Sampler", "zsobol");
-    d->filter = default_entity("PixelFilter", "gaussian");
-    d->integrator = default_entity("Integrator", "volpath");
-    d->accelerator = default_entity("Accelerator", "bvh");
     struct sr_transform one = sr_transform_identity();
     *p = (struct sr_pbrt_parser){.d = d, .error = error, .main_path = path};
-    p->state = (struct sr_pbrt_state){
-        .ctm = {one, one}, .transform = UINT32_MAX, .at_start = true, .at_end = true, .space = SR_SRGB};
-    struct sr_pbrt_entity *material = sr_array_push(&d->materials, sizeof *material);
-    if (!material || sr_pbrt_store_transform(p) == UINT32_MAX)
-        return sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", path);
-    *material = default_entity("Material", "diffuse");
-    return SR_OK;
+    p->state = (struct sr_pbrt_state){.ctm = {one, one}, .at_start = true, .at_end = true, .space = SR_SRGB};
+    return sr_pbrt_description_start(d, data, log) ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", path);
 }
 
 static sr_status finish(struct sr_pbrt_parser *p, sr_status status, const struct sr_pbrt_file *file)

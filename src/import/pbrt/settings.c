@@ -2,6 +2,7 @@
 /* Film, pixel filter, camera, sampler, integrator and options: everything that a render needs besides the scene.
  *
  * With a crop window the pixels ceil(width x0) ... ceil(width x1) - 1 are rendered, and likewise in y. */
+#include "import/describe.h"
 #include "import/pbrt/build.h"
 
 #include <string.h>
@@ -75,11 +76,12 @@ static sr_status set_region(struct sr_pbrt_build *b, const struct film *f, struc
     return SR_OK;
 }
 
-/* "scene.exr" for "folder/scene.pbrt" */
+/* "scene.exr" for "folder/scene.pbrt" and "folder/scene.glb" */
 static const char *default_filename(struct sr_pbrt_build *b)
 {
     const char *slash = strrchr(b->main_path, '/'), *name = slash ? slash + 1 : b->main_path;
-    const char *dot = strstr(name, ".pbrt");
+    const struct sr_import_format *format = sr_import_format_of(b->main_path);
+    const char *dot = format ? strrchr(name, '.') : strstr(name, ".pbrt");
     if (strcmp(name, "-") == 0)
         return "steradian.exr";
     return sr_arena_printf(b->arena, "%.*s.exr", dot ? (int)(dot - name) : (int)strlen(name), name);

@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: MIT */
+/* The list of formats. */
+#include "import/describe.h"
+
+static const struct sr_import_format formats[] = {
+    {NULL, NULL},
+};
+
+const struct sr_import_format *sr_import_format_of(const char *path)
+{
+    for (const struct sr_import_format *f = formats; f->ending; ++f)
+        if (sr_path_has_ending(path, f->ending))
+            return f;
+    return NULL;
+}
+
+sr_status sr_describe(const char *path, const struct sr_import_options *options, struct sr_arena *data, struct sr_log *log,
+                      struct sr_pbrt_description *out, struct sr_error *error)
+{
+    const struct sr_import_format *format = sr_import_format_of(path);
+    return format ? format->read(path, options, data, log, out, error) : sr_pbrt_read(path, data, log, out, error);
+}
