@@ -66,4 +66,12 @@ void sr_import_result_free(struct sr_import_result *result);
 sr_status sr_import_pbrt_material(const char *path, const char *name, struct sr_arena *arena,
                                   const struct sr_material **out, struct sr_log *log, struct sr_error *error);
 
+/* One thing that scene files may name, for manuals. name "": what all of the kind have. */
+struct sr_import_plugin {
+    const char *kind; // "Shape", "Texture float", …; "directive", "annotation": words, without parameters
+    const char *name;
+    const struct sr_param *params; // NULL: none
+};
+void sr_import_plugins(void (*visit)(void *context, const struct sr_import_plugin *plugin), void *context);
+
 #endif

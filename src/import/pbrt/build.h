@@ -121,6 +121,11 @@ sr_status sr_pbrt_build_meters(struct sr_pbrt_build *b); // after the shapes
 sr_status sr_pbrt_build_settings(struct sr_pbrt_build *b, enum sr_light_choice *choice);
 sr_status sr_pbrt_refuse_medium(struct sr_pbrt_build *b, const char *medium, struct sr_location where);
 
+/* Tables that belong to no model of a room. */
+extern const struct sr_param sr_pbrt_option_params[];
+extern const struct sr_param *const sr_pbrt_film_params, *const sr_pbrt_sampler_params, *const sr_pbrt_shape_params,
+    *const sr_pbrt_ply_params, *const sr_pbrt_material_params, *const sr_pbrt_uncertainty_params;
+
 static inline const struct sr_pbrt_transform *sr_pbrt_transform_of(const struct sr_pbrt_build *b, uint32_t index)
 {
     return SR_PBRT_AT(b->d->transforms, struct sr_pbrt_transform, index);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* What each directive does to the graphics state or adds to the description. */
+#include "import/pbrt/build.h"
 #include "import/pbrt/parser.h"
 
 #include <ctype.h>
@@ -58,18 +59,6 @@ static sr_status read_accelerator(struct sr_pbrt_parser *p)
 /* Option "type name" value; names are compared in lower case without - and _ */
 static sr_status read_option(struct sr_pbrt_parser *p)
 {
-    static const char *const known[] = {"disablepixeljitter",
-                                        "disabletexturefiltering",
-                                        "disablewavelengthjitter",
-                                        "displacementedgescale",
-                                        "forcediffuse",
-                                        "msereferenceimage",
-                                        "msereferenceout",
-                                        "pixelstats",
-                                        "rendercoordsys",
-                                        "seed",
-                                        "units",
-                                        "wavefront"};
     struct sr_pbrt_params params;
     sr_status status = sr_pbrt_params_read(p->d, p->lexer, &p->scratch, p->state.space, no_defaults, &params, p->error);
     if (status == SR_OK && params.count != 1)
@@ -87,10 +76,10 @@ static sr_status read_option(struct sr_pbrt_parser *p)
     *option = (struct sr_pbrt_option){name, params.items[0]};
     struct sr_pbrt_suggestion s = {.word = name};
     char buffer[160];
-    for (size_t i = 0; i < sizeof known / sizeof *known; ++i) {
-        if (strcmp(name, known[i]) == 0)
+    for (const struct sr_param *known = sr_pbrt_option_params; known->name; ++known) {
+        if (strcmp(name, known->name) == 0)
             return SR_OK;
-        sr_pbrt_suggest(&s, known[i]);
+        sr_pbrt_suggest(&s, known->name);
     }
     return sr_pbrt_fail(p->d, option->value.where, p->error, SR_ERROR_INPUT, "Option: unknown option \"%s\"%s",
                         option->value.name, sr_pbrt_suggestion_text(&s, buffer));

@@ -16,6 +16,7 @@ static const struct sr_param common_params[] = {
      "directions in red, green and blue"},
     {.name = NULL},
 };
+const struct sr_param *const sr_pbrt_material_params = common_params;
 
 static bool is_interface(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e)
 {

@@ -35,6 +35,7 @@ static const struct sr_param film_params[] = {
     {SR_PARAM_STRING, "filename", "1", 0, 0, NAN, MEMBER(filename), NULL},
     {.name = NULL},
 };
+const struct sr_param *const sr_pbrt_film_params = film_params;
 
 static int32_t clamp_int(double v, int32_t lo, int32_t hi)
 {
@@ -204,6 +205,7 @@ static const struct sr_param sampler_params[] = {
      "read; nets are Owen-scrambled"},
     {.name = NULL},
 };
+const struct sr_param *const sr_pbrt_sampler_params = sampler_params;
 
 static sr_status build_sampler(struct sr_pbrt_build *b)
 {

@@ -13,12 +13,14 @@ static const struct sr_param common_params[] = {
     {SR_PARAM_FLOAT_TEXTURE, "alpha", "1", -INFINITY, INFINITY, NAN, offsetof(struct common, alpha), "opacity"},
     {.name = NULL},
 };
+const struct sr_param *const sr_pbrt_shape_params = common_params;
 static const struct sr_param ply_params[] = {
-    {.kind = SR_PARAM_FILE, .name = "filename"},
-    {.kind = SR_PARAM_FLOAT_TEXTURE, .name = "displacement"},
-    {.kind = SR_PARAM_FLOAT, .name = "edgelength"},
+    {SR_PARAM_FILE, "filename", "1", 0, 0, NAN, 0, "the PLY file; .gz is unpacked"},
+    {SR_PARAM_FLOAT_TEXTURE, "displacement", "m", -INFINITY, INFINITY, NAN, 0, "along the normal"},
+    {SR_PARAM_FLOAT, "edgelength", "m", 0, INFINITY, 1, 0, "displaced meshes are divided until edges are shorter"},
     {.name = NULL},
 };
+const struct sr_param *const sr_pbrt_ply_params = ply_params;
 
 struct loaded {
     const char *path; // NULL: no PLY mesh

@@ -27,6 +27,7 @@ static const struct sr_param table[] = {
     {SR_PARAM_BOOL, "relative", "1", 0, 1, 0, offsetof(struct declared, relative), "u and a are shares of the value"},
     {.name = NULL},
 };
+const struct sr_param *const sr_pbrt_uncertainty_params = table;
 
 /* The entity that "#2" or a name stands for; first: of the list's members that directives have made. */
 static struct sr_pbrt_entity *at_number(const struct sr_array *list, size_t stride, size_t first, const char *word)
