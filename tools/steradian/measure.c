@@ -362,7 +362,6 @@ static int measure_scene(const struct measure_arguments *a, const struct sr_impo
     struct sr_error error = {0};
     struct sr_render_job job = measure_job(a, scene);
     struct sr_arena arena = {0};
-    json_t *list = json_array();
     int width = 0, maps = 0;
     bool is_on_target = true, is_complete = true;
     for (uint32_t i = 0; i < scene->meter_count; ++i) {
@@ -372,6 +371,7 @@ static int measure_scene(const struct measure_arguments *a, const struct sr_impo
     }
     if (a->outfile && maps != 1)
         return command_usage(&command_measure, "-o writes one map or intensity distribution, and %d are asked for: choose with --meter", maps);
+    json_t *list = json_array();
     for (uint32_t i = 0; i < scene->meter_count && is_complete && !error.status; ++i) {
         const struct sr_meter *meter = &scene->meters[i];
         if (!chosen[i])
