@@ -24,7 +24,8 @@ static sr_status make_room(struct sr_pbrt_build *b)
     const struct sr_pbrt_description *d = b->d;
     b->textures = sr_arena_alloc(&b->scratch, d->textures.count * sizeof *b->textures);
     b->materials = sr_arena_alloc(&b->scratch, (d->materials.count + d->named_materials.count) * sizeof *b->materials);
-    return b->textures && b->materials ? SR_OK : sr_pbrt_no_memory(b);
+    b->media = sr_arena_alloc(&b->scratch, d->media.count * sizeof *b->media);
+    return b->textures && b->materials && b->media ? SR_OK : sr_pbrt_no_memory(b);
 }
 
 static sr_status describe(struct sr_pbrt_build *b, enum sr_light_choice *choice)

@@ -65,6 +65,11 @@ struct sr_medium_common {
     bool is_absolute;                    // Le is in W m^-2 sr^-1 nm^-1 as it stands
 };
 
+/* Measured liquids and solids by name ("Wholemilk"; pbrt's 47): both coefficients as rgb of sRGB, in 1/mm; sigma_s is the reduced
+ * one, sigma_s (1 - g). false: unknown. */
+bool sr_medium_preset(const char *name, struct sr_spd *sigma_a, struct sr_spd *sigma_s);
+const char *sr_medium_preset_name(int i); // NULL past the end
+
 /* Henyey & Greenstein 1941: p(cos theta) [1/sr], theta between the directions of travel before and after. */
 static inline float sr_phase_hg(float cos_theta, float g)
 {

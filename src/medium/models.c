@@ -4,7 +4,9 @@
 
 #include <string.h>
 
-const struct sr_medium_model *const sr_medium_models[] = {NULL};
+extern const struct sr_medium_model sr_medium_homogeneous;
+
+const struct sr_medium_model *const sr_medium_models[] = {&sr_medium_homogeneous, NULL};
 
 const struct sr_medium_model *sr_medium_model_find(const char *name)
 {
@@ -14,20 +16,15 @@ const struct sr_medium_model *sr_medium_model_find(const char *name)
     return NULL;
 }
 
+/* Inverted in a form that does not cancel, neither for g near 0 nor near 1: with q = (1 - g^2) / (1 - g + 2 g u) the density is
+ * (1 - g^2) / (4 pi q^3), and 1 -+ cos theta are products. */
 float sr_phase_hg_sample(sr_vec3 d, float g, sr_vec2 u, sr_vec3 *out)
 {
-    float cos_theta;
-    if (fabsf(g) < 1e-3f) { // the inversion cancels: 1 - 2 u + its first order in g
-        float even = 1 - 2 * u.x;
-        cos_theta = -even + 1.5f * g * (1 - even * even);
-    } else {
-        float q = (1 - g * g) / (1 - g + 2 * g * u.x);
-        cos_theta = (1 + g * g - q * q) / (2 * g);
-    }
-    cos_theta = sr_clamp(cos_theta, -1, 1);
-    float sin_theta = sqrtf(sr_max(0, 1 - cos_theta * cos_theta)), s, c;
+    float scale = 1 / (1 - g + 2 * g * u.x), q = (1 - g) * (1 + g) * scale;
+    float from_end = g > 0 ? (1 - g) * (1 - u.x) * scale * (q + 1 - g) : (1 + g) * u.x * scale * (q + 1 + g); // 1 - cos theta where g > 0, else 1 + cos theta
+    float sin_theta = sqrtf(sr_max(0, from_end * (2 - from_end))), s, c;
     sr_sin_cos_turn(u.y, &s, &c);
     struct sr_frame frame = sr_frame_from_z(d);
-    *out = sr_to_world(&frame, (sr_vec3){sin_theta * c, sin_theta * s, cos_theta});
-    return sr_phase_hg(cos_theta, g);
+    *out = sr_to_world(&frame, (sr_vec3){sin_theta * c, sin_theta * s, g > 0 ? 1 - from_end : from_end - 1});
+    return SR_INV_PI / 4 * (1 - g) * (1 + g) / (q * q * q);
 }

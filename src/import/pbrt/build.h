@@ -58,6 +58,7 @@ struct sr_pbrt_build {
     struct sr_array late_textures;            // struct sr_pbrt_late_texture
     struct sr_pbrt_bound_texture *textures;   // one for each of the description
     struct sr_pbrt_built_material *materials; // first those of Material directives, then the named ones
+    struct sr_medium *media;                  // one for each of the description; without model: not made yet
     bool has_told_normalisation;              // that emission spectra are scaled to luminance 1
     bool has_warned_units;                    // that a spectrum may be meant otherwise
 };
@@ -108,6 +109,9 @@ void sr_pbrt_tell_normalisation(struct sr_pbrt_build *b, const struct sr_pbrt_en
 sr_status sr_pbrt_material(struct sr_pbrt_build *b, const struct sr_pbrt_material_ref *ref,
                            const struct sr_material **out);
 sr_status sr_pbrt_materials(struct sr_pbrt_build *b, const struct sr_pbrt_param *p, struct sr_slice *out);
+
+/* media.c: the medium of that name, made once; none where there is no name. */
+sr_status sr_pbrt_medium(struct sr_pbrt_build *b, const char *name, struct sr_location where, struct sr_medium *out);
 
 /* uncertainties.c: those that the file declares; the one that the options name is added to its parameter, before anything is built. */
 sr_status sr_pbrt_uncertainties(struct sr_pbrt_build *b);
