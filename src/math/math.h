@@ -297,6 +297,15 @@ static inline sr_vec3 sr_spherical_direction(float sin_theta, float cos_theta, f
 sr_vec3 sr_equal_area_square_to_sphere(sr_vec2 p);
 sr_vec2 sr_equal_area_sphere_to_square(sr_vec3 d);
 
+/* ---- noise ---- */
+
+/* Perlin's gradient noise of 2002, pbrt's: about -1 … 1, 0 at all whole numbers, repeats after 256. */
+float sr_noise(sr_vec3 p);
+/* The sum of octaves of noise, each of 1.99 times the frequency and omega times the height of the one before; dpdx, dpdy:
+ * the footprint, below which no octave is drawn (zero: all are). turbulence adds the octaves' absolute values. */
+float sr_fbm(sr_vec3 p, sr_vec3 dpdx, sr_vec3 dpdy, float omega, int octaves);
+float sr_turbulence(sr_vec3 p, sr_vec3 dpdx, sr_vec3 dpdy, float omega, int octaves);
+
 /* ---- quadrature ---- */
 
 /* Nodes and weights of n-point Gauss-Legendre quadrature on [a, b]. n <= 512. */
