@@ -65,12 +65,10 @@ static float share_of_tex2(const struct checkerboard *t, const struct sr_point *
         float rs = 1.5f * sr_max(fabsf(m.dsdx), fabsf(m.dsdy)), rt = 1.5f * sr_max(fabsf(m.dtdx), fabsf(m.dtdy));
         return 0.5f - 0.5f * filtered(m.st.x, rs) * filtered(m.st.y, rt);
     }
-    sr_vec3 q = sr_transform_point(&t->mapping.world_to_texture, x->p);
-    sr_vec3 dqdx = sr_transform_vector(&t->mapping.world_to_texture, x->dpdx);
-    sr_vec3 dqdy = sr_transform_vector(&t->mapping.world_to_texture, x->dpdy);
-    return 0.5f - 0.5f * filtered(q.x, 1.5f * sr_max(fabsf(dqdx.x), fabsf(dqdy.x))) *
-                      filtered(q.y, 1.5f * sr_max(fabsf(dqdx.y), fabsf(dqdy.y))) *
-                      filtered(q.z, 1.5f * sr_max(fabsf(dqdx.z), fabsf(dqdy.z)));
+    struct sr_in_space q = sr_in_space(&t->mapping.world_to_texture, x);
+    return 0.5f - 0.5f * filtered(q.p.x, 1.5f * sr_max(fabsf(q.dpdx.x), fabsf(q.dpdy.x))) *
+                      filtered(q.p.y, 1.5f * sr_max(fabsf(q.dpdx.y), fabsf(q.dpdy.y))) *
+                      filtered(q.p.z, 1.5f * sr_max(fabsf(q.dpdx.z), fabsf(q.dpdy.z)));
 }
 
 static sr_status prepare(void *self, struct sr_texture_use use, struct sr_arena *arena, struct sr_error *error)

@@ -19,6 +19,14 @@ const struct sr_texture_model *const sr_texture_models[] = {
     &sr_texture_checkerboard_spectrum,
     &sr_texture_imagemap_float,
     &sr_texture_imagemap_spectrum,
+    &sr_texture_dots_float,
+    &sr_texture_dots_spectrum,
+    &sr_texture_directionmix_float,
+    &sr_texture_directionmix_spectrum,
+    &sr_texture_fbm,
+    &sr_texture_wrinkled,
+    &sr_texture_windy,
+    &sr_texture_marble,
     NULL,
 };
 

@@ -74,6 +74,10 @@ static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_texture *t, 
 {
     const struct sr_pbrt_entity *e = &t->entity;
     const struct sr_texture_model *m = sr_texture_model_find(e->model, t->is_float);
+    if (!m && strcmp(e->model, "ptex") == 0)
+        return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT,
+                            "Texture \"%s\": Ptex files are not read: bake it into an image over the surface's (u, v) "
+                            "and use \"imagemap\"", e->name);
     if (!m) {
         const char *names[32];
         size_t n = 0;

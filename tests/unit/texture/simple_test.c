@@ -12,7 +12,7 @@ static struct sr_texture ramp(struct made *m) // a float texture that is u
     return made_texture(m, SR_PARAM_ALBEDO);
 }
 
-TEST(tables_name_each_texture_twice_and_give_pbrt_defaults)
+TEST(tables_name_each_texture_and_give_pbrt_defaults)
 {
     int count = 0;
     for (; sr_texture_models[count]; ++count) {
@@ -20,13 +20,15 @@ TEST(tables_name_each_texture_twice_and_give_pbrt_defaults)
         EXPECT(m->is_float != m->is_spectrum);
         EXPECT(m->is_float ? m->eval_float != NULL : m->eval_spectrum != NULL);
         EXPECT(sr_texture_model_find(m->name, m->is_float) == m);
-        EXPECT(sr_texture_model_find(m->name, !m->is_float) != NULL);
+        bool is_of_one_type = !sr_texture_model_find(m->name, !m->is_float);
+        bool is_noise = strcmp(m->name, "marble") == 0 || (m->is_float && m->params->kind != SR_PARAM_FLOAT_TEXTURE);
+        EXPECT(!is_of_one_type || is_noise);
         struct made made = make(m->name, m->is_float);
         for (const struct sr_param *p = m->params; p->name; ++p)
             EXPECT(p->offset < m->size && p->text && p->unit);
         sr_arena_free(&made.arena);
     }
-    EXPECT_EQUAL_INT(count, 12);
+    EXPECT_EQUAL_INT(count, 20);
     EXPECT(sr_texture_model_find("marzipan", true) == NULL);
 }
 
