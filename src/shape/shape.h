@@ -41,6 +41,7 @@ struct sr_shape_model {
     const char *name; // the scene file's word
     const struct sr_param *params;
     size_t size;
+    const struct sr_shape_model *becomes; // after prepare self begins with a self of this model, which is the shape; NULL: none
 
     /* Checks the parameters, transforms what is stored in world space, computes what is derived. */
     sr_status (*prepare)(void *self, const struct sr_shape_placement *placement, struct sr_arena *arena, struct sr_error *error);
@@ -111,6 +112,16 @@ uint32_t sr_shape_split_planar_quads(const struct sr_shape_patches *patches, str
 bool sr_shape_join_triangles(const struct sr_shape_mesh *triangles, struct sr_arena *arena, struct sr_shape_patches *patches,
                              struct sr_error *error);
 
+/* ---- what becomes a mesh ---- */
+
+struct sr_shape_loopsubdiv {
+    struct sr_shape_mesh mesh; // derived
+    int32_t levels;            // [1]
+    int32_t scheme;            // loop is the only one
+    struct sr_slice indices;   // int32, three a triangle
+    struct sr_slice P;         // sr_vec3 [m]
+};
+
 /* ---- quadrics ----
  * They live in object space in double and are placed by an affine transform. Outside is away from the axis or centre (disk:
  * +z of the object), transformed as a normal; a mirror leaves it outside, reverse_orientation turns it. A partial quadric
@@ -145,6 +156,7 @@ struct sr_shape_cylinder {
     float phi_max_rad; // derived [rad]
     struct sr_shape_quadric quadric;
 };
-extern const struct sr_shape_model sr_shape_trianglemesh, sr_shape_bilinearmesh, sr_shape_sphere, sr_shape_disk, sr_shape_cylinder;
+extern const struct sr_shape_model sr_shape_trianglemesh, sr_shape_bilinearmesh, sr_shape_sphere, sr_shape_disk, sr_shape_cylinder,
+    sr_shape_loopsubdiv;
 
 #endif

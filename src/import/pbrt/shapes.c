@@ -111,7 +111,7 @@ static sr_status prepare(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s,
 {
     struct sr_shape_placement placement = {sr_pbrt_transform_of(b, s->entity.transform)->start, s->reverse_orientation};
     struct sr_error inner = {0};
-    *out = (struct sr_shape){m, self};
+    *out = (struct sr_shape){m->becomes ? m->becomes : m, self};
     return m->prepare(self, &placement, b->arena, &inner) == SR_OK ? SR_OK : sr_pbrt_wrap(b, &s->entity, &inner);
 }
 
@@ -306,7 +306,7 @@ static sr_status add_shape(struct adder *a, const struct sr_pbrt_shape *s, struc
             return sr_pbrt_no_memory(b);
         *named = (struct sr_pbrt_named_shape){s->name, shapes[i], s->object1 != 0};
     }
-    const struct sr_shape_model *m = is_ply(s) ? NULL : shapes[0].model;
+    const struct sr_shape_model *m = is_ply(s) ? NULL : sr_shape_model_find(s->entity.model);
     sr_pbrt_warn_unused(b, &s->entity, m ? m->params : ply_params, common_params);
     return SR_OK;
 }

@@ -63,8 +63,8 @@ static void expect_warning(const char *text, const char *message)
 
 TEST(what_is_not_supported_says_so_and_what_is)
 {
-    expect_error("WorldBegin\nShape \"curve\"", "2:1: Shape \"curve\" is not supported yet; supported: trianglemesh, "
-                                                "bilinearmesh, sphere, disk, cylinder, plymesh");
+    expect_error("WorldBegin\nShape \"cone\"", "2:1: Shape \"cone\" is not supported yet; supported: trianglemesh, "
+                                               "bilinearmesh, sphere, disk, cylinder, loopsubdiv, plymesh");
     expect_error(
         "WorldBegin\nMaterial \"subsurface\"\n" BALL,
         "2:1: Material \"subsurface\" is not supported yet; supported: diffuse, diffusetransmission, conductor, "
