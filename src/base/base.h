@@ -133,6 +133,7 @@ enum sr_param_kind {
     SR_PARAM_POINT3S,          // struct sr_slice of sr_vec3 (12 bytes each)
     SR_PARAM_VECTOR3S,         // struct sr_slice of sr_vec3
     SR_PARAM_NORMAL3S,         // struct sr_slice of sr_vec3
+    SR_PARAM_RGBS,             // struct sr_slice of struct sr_rgb; valid until the model has been prepared
 };
 
 /* One parameter. Where the file gives none, the value is `initial`; NaN means "none": a texture then has a NULL model, a

@@ -45,3 +45,12 @@ sr_spectrum sr_medium_blackbody(float temperature, bool is_absolute, const struc
         s.scale *= (float)((double)SR_KM * planck_maximum(temperature));
     return sr_spd_eval(&s, w->lambda);
 }
+
+sr_status sr_medium_scale(struct sr_spd *sigma_a, struct sr_spd *sigma_s, float scale, struct sr_error *error)
+{
+    sigma_a->scale *= scale;
+    sigma_s->scale *= scale;
+    if (!isfinite(sr_spd_max(sigma_a) + sr_spd_max(sigma_s)))
+        return sr_fail(error, SR_ERROR_INPUT, "\"sigma_a\" and \"sigma_s\" times \"scale\" %g are not finite", (double)scale);
+    return SR_OK;
+}

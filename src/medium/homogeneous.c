@@ -19,7 +19,7 @@ static const struct sr_param params[] = {
     {SR_PARAM_UNBOUNDED, "sigma_s", "1/m", 0, INFINITY, 1, offsetof(struct homogeneous, sigma_s), "scattering coefficient"},
     {SR_PARAM_FLOAT, "scale", "1", 0, INFINITY, 1, offsetof(struct homogeneous, scale), "factor of both; presets are in 1/mm, so 1000 for scenes in metres"},
     {SR_PARAM_STRING, "preset", "1", 0, 0, 0, offsetof(struct homogeneous, preset), ""},
-    {SR_PARAM_FLOAT, "g", "1", -0.9999, 0.9999, 0, offsetof(struct homogeneous, g), "mean cosine of scattering, Henyey & Greenstein"},
+    {SR_PARAM_FLOAT, "g", "1", -SR_MEDIUM_MOST_G, SR_MEDIUM_MOST_G, 0, offsetof(struct homogeneous, g), "mean cosine of scattering, Henyey & Greenstein"},
     {SR_PARAM_ILLUMINANT, "Le", "cd/m^2", 0, INFINITY, NAN, offsetof(struct homogeneous, Le), "radiance where it is thick: it emits sigma_a Le on each metre"},
     {SR_PARAM_FLOAT, "Lescale", "1", 0, INFINITY, 1, offsetof(struct homogeneous, Lescale), "factor of Le"},
     {.name = NULL},
@@ -31,10 +31,8 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     struct homogeneous *m = self;
     if (m->preset && m->preset[0] && !sr_medium_preset(m->preset, &m->sigma_a, &m->sigma_s))
         return sr_fail(error, SR_ERROR_INPUT, "there is no preset \"%s\"", m->preset);
-    m->sigma_a.scale *= m->scale;
-    m->sigma_s.scale *= m->scale;
-    if (!isfinite(sr_spd_max(&m->sigma_a) + sr_spd_max(&m->sigma_s)))
-        return sr_fail(error, SR_ERROR_INPUT, "\"sigma_a\" and \"sigma_s\" times \"scale\" %g are not finite", (double)m->scale);
+    if (sr_medium_scale(&m->sigma_a, &m->sigma_s, m->scale, error))
+        return error->status;
     return sr_medium_set_emission(&m->Le, &m->common, m->Lescale, error);
 }
 

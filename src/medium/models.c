@@ -4,9 +4,11 @@
 
 #include <string.h>
 
-extern const struct sr_medium_model sr_medium_homogeneous;
+extern const struct sr_medium_model sr_medium_homogeneous, sr_medium_uniform_grid, sr_medium_rgb_grid, sr_medium_cloud;
 
-const struct sr_medium_model *const sr_medium_models[] = {&sr_medium_homogeneous, NULL};
+const struct sr_medium_model *const sr_medium_models[] = {
+    &sr_medium_homogeneous, &sr_medium_uniform_grid, &sr_medium_rgb_grid, &sr_medium_cloud, NULL,
+};
 
 const struct sr_medium_model *sr_medium_model_find(const char *name)
 {

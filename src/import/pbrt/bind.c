@@ -129,6 +129,8 @@ static sr_status bind_tuple(struct sr_pbrt_build *b, const struct sr_pbrt_entity
 static sr_status bind_run(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p,
                           const struct sr_param *row, void *member)
 {
+    if (row->kind == SR_PARAM_RGBS ? p->type != SR_PBRT_RGB : p->type == SR_PBRT_RGB)
+        return wrong_type(b, e, p, row->kind == SR_PARAM_RGBS ? "rgb" : "numbers");
     uint32_t arity = row->kind == SR_PARAM_INTS || row->kind == SR_PARAM_FLOATS ? 1
                      : row->kind == SR_PARAM_POINT2S                            ? 2
                                                                                 : 3;
@@ -138,7 +140,7 @@ static sr_status bind_run(struct sr_pbrt_build *b, const struct sr_pbrt_entity *
                           : arity == 1               ? "float"
                           : arity == 2               ? "point2"
                                                      : "point3, vector3 or normal");
-    if (arity == 3 && !is_vector3(p->type))
+    if (arity == 3 && row->kind != SR_PARAM_RGBS && !is_vector3(p->type))
         return wrong_type(b, e, p, "point3, vector3 or normal");
     if (arity == 2 && p->type != SR_PBRT_POINT2 && p->type != SR_PBRT_VECTOR2 && p->type != SR_PBRT_FLOAT)
         return wrong_type(b, e, p, "point2");
@@ -257,6 +259,7 @@ static sr_status bind_value(struct sr_pbrt_build *b, const struct sr_param *row,
     case SR_PARAM_POINT3S:
     case SR_PARAM_VECTOR3S:
     case SR_PARAM_NORMAL3S:
+    case SR_PARAM_RGBS:
         return bind_run(b, e, p, row, member);
     }
     return SR_OK;
