@@ -73,6 +73,8 @@ static sr_status import(const char *path, const struct sr_import_options *option
         const struct sr_error *inner = sr_scene_error(result->scene);
         status = sr_fail(error, inner->status, "%s: %s", path, inner->text);
     }
+    if (status == SR_OK)
+        status = sr_pbrt_settle_integrator(&b);
     return status;
 }
 

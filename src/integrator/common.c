@@ -71,6 +71,22 @@ void sr_seen_footprint(const struct sr_path_start *start, struct sr_point *x)
     sr_first_footprint(&seen, x);
 }
 
+void sr_path_footprint(const struct sr_path_start *start, struct sr_hit *x, bool is_first, bool is_scattered, float spread, float *width)
+{
+    if (is_first) {
+        sr_first_footprint(start, &x->point);
+        *width = 0.5f * (sr_length(x->point.dpdx) + sr_length(x->point.dpdy));
+        return;
+    }
+    *width += is_scattered ? 0 : spread * x->t;
+    if (x->has_footprint && is_scattered) {
+        sr_seen_footprint(start, &x->point);
+    } else if (x->has_footprint) {
+        struct sr_frame tangent = sr_frame_from_z(x->point.n);
+        sr_point_set_footprint(&x->point, sr_scale(*width, tangent.x), sr_scale(*width, tangent.y));
+    }
+}
+
 bool sr_has_delta_lights(const struct sr_scene *scene)
 {
     const struct sr_lights *lights = sr_scene_lights(scene);
@@ -100,9 +116,11 @@ sr_spectrum sr_hit_Le(const struct sr_scene *scene, const struct sr_hit *hit, sr
     return light.model->Le(light.self, &hit->point, w, wavelengths);
 }
 
-extern const struct sr_integrator_model sr_integrator_light_path, sr_integrator_bdpt, sr_integrator_path, sr_integrator_simple_path, sr_integrator_random_walk, sr_integrator_ambient_occlusion, sr_integrator_estimator;
+extern const struct sr_integrator_model sr_integrator_light_path, sr_integrator_bdpt, sr_integrator_path, sr_integrator_volpath, sr_integrator_simple_volpath, sr_integrator_simple_path, sr_integrator_random_walk, sr_integrator_ambient_occlusion, sr_integrator_estimator;
 const struct sr_integrator_model *const sr_integrator_models[] = {
     &sr_integrator_path,
+    &sr_integrator_volpath,
+    &sr_integrator_simple_volpath,
     &sr_integrator_simple_path,
     &sr_integrator_random_walk,
     &sr_integrator_ambient_occlusion,

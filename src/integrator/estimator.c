@@ -262,23 +262,6 @@ static bool go_on(const struct walk *t, const struct sr_vertex *v, uint32_t grou
     return sr_spectrum_any(*beta != 0.0f);
 }
 
-/* The footprint at a surface, as path tracing has it. */
-static void set_footprint(const struct sr_path_start *start, struct sr_hit *x, int bounce, bool is_scattered, float spread, float *width)
-{
-    if (bounce == 0) {
-        sr_first_footprint(start, &x->point);
-        *width = 0.5f * (sr_length(x->point.dpdx) + sr_length(x->point.dpdy));
-        return;
-    }
-    *width += is_scattered ? 0 : spread * x->t;
-    if (x->has_footprint && is_scattered) {
-        sr_seen_footprint(start, &x->point);
-    } else if (x->has_footprint) {
-        struct sr_frame tangent = sr_frame_from_z(x->point.n);
-        sr_point_set_footprint(&x->point, sr_scale(*width, tangent.x), sr_scale(*width, tangent.y));
-    }
-}
-
 /* From a sensor ray, or from a receiver (start then holds nothing). */
 static sr_spectrum walk(const struct walk *t, const struct sr_path_start *start, const struct sr_receiver *receiver, struct sr_hit *first)
 {
@@ -310,7 +293,7 @@ static sr_spectrum walk(const struct walk *t, const struct sr_path_start *start,
             if (x->material && bounce == t->e->max_depth)
                 return L;
             if (x->material && sr_scene_has_footprints(t->scene))
-                set_footprint(start, x, bounce, is_scattered, spread, &width);
+                sr_path_footprint(start, x, bounce == 0, is_scattered, spread, &width);
             if (first && bounce == 0)
                 first->point = x->point;
             v->bsdf.model = NULL;

@@ -43,6 +43,7 @@ struct sr_path_start {
      * density that chose its direction [1/sr]. Only for integrators that say so. */
     const struct sr_point *receiver;
     float pdf;
+    const struct sr_medium *medium; // where the ray begins; NULL: vacuum
 };
 
 /* A place that takes light in, with a weight: reading = integral response(wi) L(x, wi) dwi. Directions are local. */
@@ -66,6 +67,7 @@ struct sr_integrator_model {
     sr_spectrum (*L)(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
                      struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker);
     bool knows_receivers; // weighs what a ray from start->receiver meets
+    bool knows_media;     // others take all media for vacuum
     /* L is only what worker->target, if there is one, is not told of: by L itself, or by splat, one path from the lights with
      * the numbers target->sampler. As many are wanted as samples in all. */
     bool splats;
@@ -104,6 +106,8 @@ static inline const char *sr_integrator_label(const struct sr_integrator *i)
 }
 static inline const char *sr_integrator_blind(const struct sr_integrator *i, const struct sr_scene *scene)
 {
+    if (sr_scene_has_media(scene) && !i->model->knows_media)
+        return "media are taken for vacuum, as by pbrt's estimators of that kind; volpath knows them";
     return i->model->blind ? i->model->blind(i->self, scene) : NULL;
 }
 /* The strategies by number, NULL where they end. */
@@ -136,6 +140,8 @@ void sr_first_footprint(const struct sr_path_start *start, struct sr_point *x);
  * path has been scattered, which looks at x from all sides. Bump maps tilt by it, so it decides what they look like; it
  * is what pbrt takes (Pharr, Jakob & Humphreys 2023, 10.1.2). */
 void sr_seen_footprint(const struct sr_path_start *start, struct sr_point *x);
+/* The footprint at a surface of a path: a cone of that spread, whose width goes along, until the path is scattered. */
+void sr_path_footprint(const struct sr_path_start *start, struct sr_hit *x, bool is_first, bool is_scattered, float spread, float *width);
 
 /* Lights that are delta functions: no ray meets them. */
 bool sr_has_delta_lights(const struct sr_scene *scene);

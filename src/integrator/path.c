@@ -5,18 +5,12 @@
  *
  * The integral is estimated twice, by a direction toward a light and by one that the surface prefers, and the two are
  * weighed by their densities (Veach 1997, power heuristic). */
-#include "integrator/integrator.h"
+#include "integrator/path.h"
 
-struct path {
-    int32_t max_depth;     // most surfaces at which a path is scattered
-    int32_t light_sampler; // enum sr_light_choice; the scene was finished with it
-    bool regularize;
-};
-
-static const struct sr_param params[] = {
-    {SR_PARAM_INT, "maxdepth", "1", 0, 1e6, 5, offsetof(struct path, max_depth), "most scatterings of a path"},
-    {SR_PARAM_ENUM, "lightsampler", "1", 0, 3, 0, offsetof(struct path, light_sampler), "bvh|power|uniform|exhaustive"},
-    {SR_PARAM_BOOL, "regularize", "1", 0, 1, 0, offsetof(struct path, regularize), "accepted; never done, for it is biased"},
+const struct sr_param sr_path_params[] = {
+    {SR_PARAM_INT, "maxdepth", "1", 0, 1e6, 5, offsetof(struct sr_path, max_depth), "most scatterings of a path"},
+    {SR_PARAM_ENUM, "lightsampler", "1", 0, 3, 0, offsetof(struct sr_path, light_sampler), "bvh|power|uniform|exhaustive"},
+    {SR_PARAM_BOOL, "regularize", "1", 0, 1, 0, offsetof(struct sr_path, regularize), "accepted; never done, for it is biased"},
     {.name = NULL},
 };
 
@@ -61,7 +55,7 @@ static inline bool direct(const struct sr_lights *lights, const struct sr_point 
 static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
                           struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
 {
-    const struct path *path = self;
+    const struct sr_path *path = self;
     const struct sr_lights *lights = sr_scene_lights(scene);
     struct sr_ray ray = start->ray;
     sr_spectrum L = SR_BLACK;   // radiance gathered so far                     [W m^-2 sr^-1 nm^-1]
@@ -180,4 +174,4 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
     }
 }
 
-const struct sr_integrator_model sr_integrator_path = {.name = "path", .text = "paths from the sensor; lights and BSDFs sampled and weighed by the power heuristic", .params = params, .size = sizeof(struct path), .L = path_L, .knows_receivers = true};
+const struct sr_integrator_model sr_integrator_path = {.name = "path", .text = "paths from the sensor; lights and BSDFs sampled and weighed by the power heuristic", .params = sr_path_params, .size = sizeof(struct sr_path), .L = path_L, .knows_receivers = true};

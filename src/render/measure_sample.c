@@ -117,6 +117,7 @@ static sr_spectrum estimate(const struct measuring *m, const struct sr_sampler *
     float response = pdf > 0 ? model->response(self, wi) : 0;
     if (response != 0) {
         struct sr_path_start start = {.ray = sr_leave(&at.x, sr_to_world(&at.frame, wi)), .receiver = m->aim == AIM_AT_ALL ? &at.x : NULL, .pdf = pdf};
+        start.medium = sr_scene_medium_at(m->job->scene, &start.ray);
         sum += integrator->model->L(integrator->self, m->job->scene, &start, sampler, w, NULL, worker) * (response / pdf);
     }
     if (integrator->model->splat && !is_ray)

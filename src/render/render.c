@@ -92,7 +92,8 @@ static bool sample_pixel(const struct sr_render_job *job, const struct response 
     // more; the same at any count, or the picture's expectation would depend on it (bump maps: by a factor of 2)
     float share = job->jitter_pixel ? PIXEL_SHARE : 1;
     struct sr_path_start start = {.ray = view.ray, .dodx = sr_scale(share, view.dodx), .dody = sr_scale(share, view.dody),
-                                  .dddx = sr_scale(share, view.dddx), .dddy = sr_scale(share, view.dddy)};
+                                  .dddx = sr_scale(share, view.dddx), .dddy = sr_scale(share, view.dddy),
+                                  .medium = sr_scene_sensor_medium(job->scene)};
     struct sr_hit hit;
     sr_spectrum L = job->integrator.model->L(job->integrator.self, job->scene, &start, sampler, &w, first ? &hit : NULL, worker);
     struct sr_xyz xyz = sr_spectrum_to_xyz(L, &w);

@@ -39,7 +39,9 @@ struct instance {
 struct sr_scene {
     struct sr_arena arena;
     struct sr_error error;
-    bool is_finished, has_footprints;
+    bool is_finished, has_footprints, has_media, has_interfaces;
+    struct sr_medium sensor_medium;
+    const struct sr_medium *around; // beyond all surfaces; NULL: vacuum
     struct sr_array objects;        // struct object *
     struct sr_array instance_defs;  // struct instance_def
     struct sr_array light_defs;     // struct sr_light
@@ -59,6 +61,7 @@ struct instance_def {
     sr_object_id object;
 };
 
+void scene_find_media(struct sr_scene *scene); // once rays can be cast
 void scene_build_embree(struct sr_scene *scene, int threads);
 /* Alpha test of a hit: true where the surface is. Partial coverage is decided by a hash of the ray. */
 bool scene_alpha_accepts(const struct placed_shape *s, uint32_t primitive, sr_vec2 hit, sr_vec3 o, sr_vec3 d);

@@ -162,9 +162,13 @@ static void place_shapes(struct sr_scene *scene, struct object *object, bool is_
         uint32_t n = def->shape.model->primitive_count(def->shape.self);
         bool is_mesh = def->shape.model == &sr_shape_trianglemesh;
         *(is_mesh ? &scene->counts.triangles : def->shape.model == &sr_shape_bilinearmesh ? &scene->counts.patches : &scene->counts.quadrics) += n;
-        // a surface that neither scatters nor glows is not there; nor is one without coverage
-        if (n == 0 || is_invisible || (material_number == 0 && !has_light))
+        // a surface that neither scatters nor glows nor parts media is not there; nor is one without coverage
+        if (n == 0 || is_invisible || (material_number == 0 && !has_light && !def->media))
             continue;
+        if (def->media) {
+            scene->has_media |= def->media->inside.model || def->media->outside.model;
+            scene->has_interfaces |= material_number == 0;
+        }
         object->shapes[object->shape_count++] = (struct placed_shape){
             .shape = def->shape, .material = material_number ? def->material : NULL, .first_light = first_light, .per_light = per_light, .number = number,
             .media = def->media,
@@ -209,6 +213,8 @@ sr_status sr_scene_finish(struct sr_scene *scene, int threads, enum sr_light_cho
     scene->counts.instances = scene->instance_defs.count;
     if (scene->error.status == SR_OK)
         scene_build_embree(scene, threads);
+    if (scene->error.status == SR_OK)
+        scene_find_media(scene);
     if (scene->error.status == SR_OK)
         place_lights(scene, choice);
     scene->counts.geometry_B = scene->arena.total;

@@ -39,6 +39,8 @@ void sr_scene_add_shape(struct sr_scene *scene, const struct sr_shape_def *def);
 sr_object_id sr_scene_add_object(struct sr_scene *scene);
 void sr_scene_add_instance(struct sr_scene *scene, sr_object_id object, const struct sr_transform *object_to_world);
 void sr_scene_add_light(struct sr_scene *scene, struct sr_light light);
+/* What is around the sensor; without model: vacuum, as it is if nobody says anything. */
+void sr_scene_set_sensor_medium(struct sr_scene *scene, struct sr_medium medium);
 /* threads: for building the acceleration structure. */
 sr_status sr_scene_finish(struct sr_scene *scene, int threads, enum sr_light_choice choice);
 
@@ -91,6 +93,22 @@ struct sr_ray_log {
 uint64_t sr_scene_replay(const struct sr_scene *scene, const struct sr_ray_log *log);
 
 const struct sr_lights *sr_scene_lights(const struct sr_scene *scene);
+/* Whether there is any medium but vacuum; and whether light passes surfaces behind which another one begins. */
+bool sr_scene_has_media(const struct sr_scene *scene);
+bool sr_scene_has_interfaces(const struct sr_scene *scene);
+/* A medium as rays carry it along: NULL is vacuum. */
+const struct sr_medium *sr_scene_sensor_medium(const struct sr_scene *scene);
+/* Where the ray begins: what is on this side of the first surface along it that has media, whatever is in between; where
+ * there is none, what is around the scene: the outermost surface's outside, or else the sensor's medium. */
+const struct sr_medium *sr_scene_medium_at(const struct sr_scene *scene, const struct sr_ray *ray);
+/* On the side of the surface that w points to, for light that has come through `medium`. */
+static inline const struct sr_medium *sr_hit_medium(const struct sr_hit *hit, sr_vec3 w, const struct sr_medium *medium)
+{
+    if (!hit->media)
+        return medium;
+    const struct sr_medium *m = sr_dot(hit->point.n, w) > 0 ? &hit->media->outside : &hit->media->inside;
+    return m->model ? m : NULL;
+}
 bool sr_scene_has_footprints(const struct sr_scene *scene); // whether any material looks at them
 bool sr_scene_has_mirrors(const struct sr_scene *scene); // whether any material, seen straight on, is a mirror or clear glass
 struct sr_box sr_scene_bounds(const struct sr_scene *scene);

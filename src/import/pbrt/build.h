@@ -123,7 +123,8 @@ sr_status sr_pbrt_emission(struct sr_pbrt_build *b, uint32_t area_light1, float 
 sr_status sr_pbrt_build_shapes(struct sr_pbrt_build *b);
 sr_status sr_pbrt_build_meters(struct sr_pbrt_build *b); // after the shapes
 sr_status sr_pbrt_build_settings(struct sr_pbrt_build *b, enum sr_light_choice *choice);
-sr_status sr_pbrt_refuse_medium(struct sr_pbrt_build *b, const char *medium, struct sr_location where);
+/* Once the scene is finished: estimators that know media where there are some, the quickest where there are none. */
+sr_status sr_pbrt_settle_integrator(struct sr_pbrt_build *b);
 
 /* Tables that belong to no model of a room. */
 extern const struct sr_param sr_pbrt_option_params[];

@@ -69,7 +69,8 @@ static sr_status add_light(struct sr_pbrt_build *b, const struct sr_pbrt_light *
                 names[n++] = sr_light_models[i]->name;
         return sr_pbrt_unsupported(b, e, names, n);
     }
-    sr_status status = sr_pbrt_refuse_medium(b, light->outside, light->medium_where);
+    struct sr_medium around; // only its name is checked: shadow rays find out by themselves what they come through
+    sr_status status = sr_pbrt_medium(b, light->outside, light->medium_where, &around);
     char *self = sr_arena_alloc(b->arena, m->size);
     if (!self)
         return sr_pbrt_no_memory(b);

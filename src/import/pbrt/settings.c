@@ -162,12 +162,10 @@ static sr_status build_sensor(struct sr_pbrt_build *b)
             names[n] = sr_sensor_models[n]->name;
         return sr_pbrt_unsupported(b, e, names, n);
     }
-    sr_status status = sr_pbrt_refuse_medium(b, b->d->camera_medium, b->d->camera_medium_where);
     void *self = sr_arena_alloc(b->arena, m->size);
     if (!self)
         return sr_pbrt_no_memory(b);
-    if (status == SR_OK)
-        status = sr_pbrt_bind(b, m->params, e, plain, self);
+    sr_status status = sr_pbrt_bind(b, m->params, e, plain, self);
     if (status != SR_OK)
         return status;
     struct sr_transform camera_to_world = sr_transform_invert(&sr_pbrt_transform_of(b, e->transform)->start);
@@ -237,14 +235,10 @@ static sr_status build_sampler(struct sr_pbrt_build *b)
 
 /* ---- integrator ---- */
 
-/* pbrt's estimators that are not here: without media they and path tracing estimate the same integral */
+/* pbrt's estimators that are not here: they and path tracing estimate the same integral */
 static bool is_done_by_path(const char *name)
 {
-    static const char *const names[] = {"volpath", "mlt", "sppm", "simplevolpath"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; ++i)
-        if (strcmp(name, names[i]) == 0)
-            return true;
-    return false;
+    return strcmp(name, "mlt") == 0 || strcmp(name, "sppm") == 0;
 }
 
 /* The file's own integrator; or what the options name, with the file's numbers where both have them. */
@@ -255,10 +249,10 @@ static sr_status build_integrator(struct sr_pbrt_build *b, enum sr_light_choice 
     if (is_done_by_path(e.model)) {
         if (e.where.file && !other)
             sr_pbrt_warn(b->d, e.where,
-                         "Integrator \"%s\" is not supported yet: \"path\" renders this scene instead, with the same "
-                         "expectation",
+                         "Integrator \"%s\" is not supported yet: path tracing (\"volpath\") renders this scene instead, "
+                         "with the same expectation",
                          e.model);
-        e.model = "path";
+        e.model = "volpath";
     }
     if (other && !sr_integrator_model_find(e.model))
         e.model = "path";
@@ -286,7 +280,7 @@ static sr_status build_integrator(struct sr_pbrt_build *b, enum sr_light_choice 
     struct sr_integrator own = {m, self};
     b->result->integrator = own;
     if (status == SR_OK && other)
-        status = sr_integrator_parse(is_done_by_path(other) ? "path" : other, &own, b->arena, &b->result->integrator, b->error);
+        status = sr_integrator_parse(is_done_by_path(other) ? "volpath" : other, &own, b->arena, &b->result->integrator, b->error);
     return status;
 }
 
@@ -337,12 +331,26 @@ static sr_status build_options(struct sr_pbrt_build *b)
     return SR_OK;
 }
 
-sr_status sr_pbrt_refuse_medium(struct sr_pbrt_build *b, const char *medium, struct sr_location where)
+static sr_status build_sensor_medium(struct sr_pbrt_build *b)
 {
-    if (!medium || !medium[0])
+    struct sr_medium medium;
+    sr_status status = sr_pbrt_medium(b, b->d->camera_medium, b->d->camera_medium_where, &medium);
+    sr_scene_set_sensor_medium(b->result->scene, medium);
+    return status;
+}
+
+sr_status sr_pbrt_settle_integrator(struct sr_pbrt_build *b)
+{
+    struct sr_integrator *i = &b->result->integrator;
+    bool has_media = sr_scene_has_media(b->result->scene);
+    const char *name = i->model->name;
+    if (strcmp(name, "volpath") == 0 && !has_media)
+        i->model = sr_integrator_model_find("path"); // which takes the same parameters
+    if (!has_media || (strcmp(name, "bdpt") != 0 && strcmp(name, "lightpath") != 0))
         return SR_OK;
-    return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT,
-                        "MediumInterface \"%s\": participating media are not supported yet", medium);
+    sr_log(b->log, SR_WARNING, "%s: \"%s\" knows no media here: \"volpath\" renders this scene instead, with the same expectation", b->main_path, name);
+    struct sr_integrator own = *i;
+    return sr_integrator_parse("volpath", &own, b->arena, i, b->error);
 }
 
 sr_status sr_pbrt_build_settings(struct sr_pbrt_build *b, enum sr_light_choice *choice)
@@ -356,5 +364,7 @@ sr_status sr_pbrt_build_settings(struct sr_pbrt_build *b, enum sr_light_choice *
         status = build_sampler(b);
     if (status == SR_OK)
         status = build_options(b);
+    if (status == SR_OK)
+        status = build_sensor_medium(b);
     return status == SR_OK ? build_integrator(b, choice) : status;
 }

@@ -37,6 +37,7 @@ struct adder {
     bool has_warned_object_light, has_warned_displacement;
     uint32_t emission_of; // area_light1 of
     const struct sr_light_emission *emission;
+    const struct sr_media *media; // of the last shape that had some
 };
 
 static bool is_ply(const struct sr_pbrt_shape *s)
@@ -273,6 +274,21 @@ static sr_status find_emission(struct adder *a, const struct sr_pbrt_shape *s, c
     return status;
 }
 
+/* Where both sides are the same, the surface says nothing of media, and light takes on its own, as in pbrt. */
+static sr_status find_media(struct adder *a, const struct sr_pbrt_shape *s, const struct sr_media **out)
+{
+    struct sr_media media;
+    sr_status status = sr_pbrt_medium(a->b, s->inside, s->medium_where, &media.inside);
+    if (status == SR_OK)
+        status = sr_pbrt_medium(a->b, s->outside, s->medium_where, &media.outside);
+    if (status != SR_OK || media.inside.self == media.outside.self)
+        return status;
+    if (!a->media || a->media->inside.self != media.inside.self || a->media->outside.self != media.outside.self)
+        a->media = sr_arena_copy(a->b->arena, &media, sizeof media);
+    *out = a->media;
+    return *out ? SR_OK : sr_pbrt_no_memory(a->b);
+}
+
 static sr_status add_shape(struct adder *a, const struct sr_pbrt_shape *s, struct loaded *l)
 {
     struct sr_pbrt_build *b = a->b;
@@ -280,9 +296,7 @@ static sr_status add_shape(struct adder *a, const struct sr_pbrt_shape *s, struc
     int count = 0;
     struct common common = {{NULL, NULL}};
     struct sr_shape_def def = {.object = s->object1 ? a->objects[s->object1 - 1] : (sr_object_id){0}};
-    sr_status status = sr_pbrt_refuse_medium(b, s->inside, s->medium_where);
-    if (status == SR_OK)
-        status = sr_pbrt_refuse_medium(b, s->outside, s->medium_where);
+    sr_status status = find_media(a, s, &def.media);
     if (status == SR_OK)
         status = sr_pbrt_material(b, &s->material, &def.material);
     if (status == SR_OK)

@@ -76,7 +76,7 @@ TEST(what_is_not_supported_says_so_and_what_is)
                  "1:1: Camera \"realistic\" is not supported yet; supported: perspective, orthographic, spherical, fisheye");
     expect_error("Film \"gbuffer\"\nWorldBegin", "1:1: Film \"gbuffer\" is not supported yet; supported: rgb");
     expect_error("WorldBegin\nMediumInterface \"fog\" \"\"\n" BALL,
-                 "2:1: MediumInterface \"fog\": participating media are not supported yet");
+                 "2:1: there is no medium named \"fog\"");
     expect_error("Film \"rgb\"\n\"string sensor\" \"nikon_d850\" WorldBegin",
                  "2:1: sensor \"nikon_d850\" is not supported yet; supported: cie1931");
     expect_error(
@@ -151,7 +151,7 @@ TEST(odd_things_are_warned_of)
         "WorldBegin\nMaterial \"none\"\n" BALL,
         "s.pbrt:2:1: Material \"none\" is deprecated: \"interface\" is the name of the material that is none");
     expect_warning("Integrator \"sppm\" WorldBegin " BALL,
-                   "s.pbrt:1:1: Integrator \"sppm\" is not supported yet: \"path\" renders this scene instead");
+                   "s.pbrt:1:1: Integrator \"sppm\" is not supported yet: path tracing (\"volpath\") renders this scene instead");
     expect_warning("WorldBegin AreaLightSource \"diffuse\" ObjectBegin \"a\"\n" BALL "ObjectEnd ObjectInstance \"a\"",
                    "s.pbrt:2:1: a shape of an object cannot shine");
     import("WorldBegin Attribute \"shape\" \"float nobody\" 1 " BALL); // defaults need not be used
