@@ -262,4 +262,30 @@ struct sr_bsdf_coated {
                         // sample). For comparing images only.
 };
 
+/* A fibre along x; what stands below `derived` is made by the model's ready. */
+enum { SR_HAIR_FROM_SIGMA_A, SR_HAIR_FROM_REFLECTANCE, SR_HAIR_FROM_MELANIN };
+enum { SR_HAIR_LOBES = 4 }; // R, TT, TRT, the rest
+struct sr_bsdf_hair {
+    sr_spectrum sigma_a;          // [1/radius]
+    sr_spectrum reflectance;      // [1]
+    float h, eta, beta_m, beta_n; // [1]
+    float eumelanin, pheomelanin; // [1] concentrations
+    float alpha;                  // [deg]
+    int32_t colour_from;
+    // derived
+    sr_spectrum sigma;                  // [1/radius]
+    float v[SR_HAIR_LOBES], s, s_norm; // s_norm: share of the logistic that lies within one turn
+    float sin_tilt[3], cos_tilt[3];
+    float gamma_o; // [rad]
+};
+
+/* How light that has wandered below a surface leaves it: f = T(theta_i) / (pi (1 - F_diffuse)), whatever wo above. Belongs to
+ * the material "subsurface" and stands in no list. */
+struct sr_bsdf_exit {
+    float eta;   // [1] inside over outside
+    float scale; // [1/sr] 1 / (pi INTEGRAL T cos / pi dw)
+};
+extern const struct sr_bsdf_model sr_bsdf_exit;
+void sr_bsdf_exit_make(struct sr_bsdf *b, float eta);
+
 #endif

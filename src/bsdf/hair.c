@@ -24,40 +24,25 @@
  * for red, green, blue (d'Eon et al. 2011), taken at 610, 545 and 465 nm, and exp of a parabola in lambda through these. */
 #include "bsdf/microfacet.h"
 
-#define LOBES 4 // R, TT, TRT, the rest
+#define LOBES SR_HAIR_LOBES
 
-enum { FROM_SIGMA_A, FROM_REFLECTANCE, FROM_MELANIN };
-
-struct hair {
-    sr_spectrum sigma_a;          // [1/radius]
-    sr_spectrum reflectance;      // [1]
-    float h, eta, beta_m, beta_n; // [1]
-    float eumelanin, pheomelanin; // [1] concentrations
-    float alpha;                  // [deg]
-    int32_t colour_from;
-    // derived
-    sr_spectrum sigma;         // [1/radius]
-    float v[LOBES], s, s_norm; // s_norm: share of the logistic that lies within one turn
-    float sin_tilt[3], cos_tilt[3];
-    float gamma_o; // [rad]
-};
-_Static_assert(sizeof(struct hair) <= SR_BSDF_SIZE, "too large for a BSDF at a point");
+_Static_assert(sizeof(struct sr_bsdf_hair) <= SR_BSDF_SIZE, "too large for a BSDF at a point");
 
 static const struct sr_param params[] = {
-    {SR_PARAM_UNBOUNDED, "sigma_a", "1/radius", 0, 20, 0.3, offsetof(struct hair, sigma_a), "absorption inside"},
-    {SR_PARAM_ALBEDO, "reflectance", "1", 0, 1, 0.5, offsetof(struct hair, reflectance),
+    {SR_PARAM_UNBOUNDED, "sigma_a", "1/radius", 0, 20, 0.3, offsetof(struct sr_bsdf_hair, sigma_a), "absorption inside"},
+    {SR_PARAM_ALBEDO, "reflectance", "1", 0, 1, 0.5, offsetof(struct sr_bsdf_hair, reflectance),
      "colour of a head of such hair, where it is to give sigma_a"},
-    {SR_PARAM_ENUM, "colour_from", "1", 0, 2, FROM_SIGMA_A, offsetof(struct hair, colour_from),
+    {SR_PARAM_ENUM, "colour_from", "1", 0, 2, SR_HAIR_FROM_SIGMA_A, offsetof(struct sr_bsdf_hair, colour_from),
      "sigma_a|reflectance|melanin"},
-    {SR_PARAM_FLOAT, "eumelanin", "1", 0, 8, 1.3, offsetof(struct hair, eumelanin),
+    {SR_PARAM_FLOAT, "eumelanin", "1", 0, 8, 1.3, offsetof(struct sr_bsdf_hair, eumelanin),
      "concentration of what makes hair brown and black: 0.3 blond, 1.3 brown, 8 black"},
-    {SR_PARAM_FLOAT, "pheomelanin", "1", 0, 8, 0, offsetof(struct hair, pheomelanin),
+    {SR_PARAM_FLOAT, "pheomelanin", "1", 0, 8, 0, offsetof(struct sr_bsdf_hair, pheomelanin),
      "concentration of what makes hair yellow and red"},
-    {SR_PARAM_FLOAT, "h", "1", -1, 1, 0, offsetof(struct hair, h), "offset from the axis, in radii"},
-    {SR_PARAM_FLOAT, "eta", "1", 1.1, 2, 1.55, offsetof(struct hair, eta), "index of refraction"},
-    {SR_PARAM_FLOAT, "beta_m", "1", 0.1, 1, 0.3, offsetof(struct hair, beta_m), "roughness along the hair"},
-    {SR_PARAM_FLOAT, "beta_n", "1", 0.1, 1, 0.3, offsetof(struct hair, beta_n), "roughness around the hair"},
-    {SR_PARAM_FLOAT, "scale_tilt", "deg", 0, 10, 2, offsetof(struct hair, alpha),
+    {SR_PARAM_FLOAT, "h", "1", -1, 1, 0, offsetof(struct sr_bsdf_hair, h), "offset from the axis, in radii"},
+    {SR_PARAM_FLOAT, "eta", "1", 1.1, 2, 1.55, offsetof(struct sr_bsdf_hair, eta), "index of refraction"},
+    {SR_PARAM_FLOAT, "beta_m", "1", 0.1, 1, 0.3, offsetof(struct sr_bsdf_hair, beta_m), "roughness along the hair"},
+    {SR_PARAM_FLOAT, "beta_n", "1", 0.1, 1, 0.3, offsetof(struct sr_bsdf_hair, beta_n), "roughness around the hair"},
+    {SR_PARAM_FLOAT, "scale_tilt", "deg", 0, 10, 2, offsetof(struct sr_bsdf_hair, alpha),
      "tilt of the scales towards the root"},
     {0},
 };
@@ -80,7 +65,7 @@ static float melanin(float lambda, float red, float green, float blue)
 
 static void ready(void *self, const struct sr_bsdf_at *at)
 {
-    struct hair *m = self;
+    struct sr_bsdf_hair *m = self;
     float b = m->beta_m, n = m->beta_n;
     m->v[0] = sr_sqr(0.726f * b + 0.812f * b * b + 3.7f * power(b, 20));
     m->v[1] = 0.25f * m->v[0];
@@ -94,12 +79,12 @@ static void ready(void *self, const struct sr_bsdf_at *at)
     }
     m->gamma_o = asinf(sr_clamp(m->h, -1, 1));
     m->sigma = m->sigma_a;
-    if (m->colour_from == FROM_REFLECTANCE) {
+    if (m->colour_from == SR_HAIR_FROM_REFLECTANCE) {
         float n2 = n * n,
               q = 5.969f - 0.215f * n + 2.532f * n2 - 10.73f * n2 * n + 5.574f * n2 * n2 + 0.245f * n2 * n2 * n;
         for (int i = 0; i < SR_LAMBDA_COUNT; ++i)
-            m->sigma[i] = sr_sqr(logf(sr_max(m->reflectance[i], 1e-4f)) / q);
-    } else if (m->colour_from == FROM_MELANIN) {
+            m->sigma[i] = sr_sqr(logf(sr_max(m->reflectance[i], 1e-30f)) / q);
+    } else if (m->colour_from == SR_HAIR_FROM_MELANIN) {
         for (int i = 0; i < SR_LAMBDA_COUNT; ++i)
             m->sigma[i] = m->eumelanin * melanin(at->lambda[i], 0.419f, 0.697f, 1.37f) +
                           m->pheomelanin * melanin(at->lambda[i], 0.187f, 0.4f, 1.05f);
@@ -130,7 +115,7 @@ static float longitudinal(float v, float ci, float co, float si, float so)
 {
     return expf((ci * co - si * so - 1) / v) * bessel_scaled(ci * co / v) / (v * (1 - expf(-2 / v)));
 }
-static float azimuthal(const struct hair *m, float phi)
+static float azimuthal(const struct sr_bsdf_hair *m, float phi)
 {
     phi -= 2 * SR_PI * floorf(phi / (2 * SR_PI) + 0.5f); // -pi ... pi
     float e = expf(-fabsf(phi) / m->s);
@@ -144,7 +129,7 @@ struct view {
     sr_spectrum A[LOBES];             // [1]
     float share[LOBES];               // [1] for choosing
 };
-static struct view view_of(const struct hair *m, sr_vec3 wo)
+static struct view view_of(const struct sr_bsdf_hair *m, sr_vec3 wo)
 {
     struct view w;
     float so = wo.x, co = sqrtf(wo.y * wo.y + wo.z * wo.z);
@@ -181,7 +166,7 @@ static struct view view_of(const struct hair *m, sr_vec3 wo)
 
 static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *pdf)
 {
-    const struct hair *m = self;
+    const struct sr_bsdf_hair *m = self;
     (void)mode;
     struct view w = view_of(m, wo);
     float si = wi.x, ci = sqrtf(wi.y * wi.y + wi.z * wi.z), phi = atan2f(wi.z, wi.y) - w.phi;
@@ -215,7 +200,7 @@ static float pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mod
 static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode,
                    struct sr_bsdf_sample *s)
 {
-    const struct hair *m = self;
+    const struct sr_bsdf_hair *m = self;
     struct view w = view_of(m, wo);
     int p = 0;
     while (p < LOBES - 1 && u_lobe >= w.share[p])
@@ -249,7 +234,7 @@ const struct sr_bsdf_model sr_bsdf_hair = {
     .source = "M. J. Chiang, B. Bitterli, C. Tappan & B. Burley, A Practical and Controllable Hair and Fur Model, 2016",
     .limits = "a fibre along x seen from far away: light leaves where it entered; not reciprocal",
     .params = params,
-    .size = sizeof(struct hair),
+    .size = sizeof(struct sr_bsdf_hair),
     .ready = ready,
     .lobes = lobes,
     .f = f,

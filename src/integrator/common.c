@@ -87,6 +87,16 @@ void sr_path_footprint(const struct sr_path_start *start, struct sr_hit *x, bool
     }
 }
 
+const char *sr_integrator_blind(const struct sr_integrator *i, const struct sr_scene *scene)
+{
+    if (sr_scene_has_media(scene) && !i->model->knows_media)
+        return "media are taken for vacuum, as by pbrt's estimators of that kind; volpath knows them";
+    const char *own = i->model->blind ? i->model->blind(i->self, scene) : NULL;
+    if (!own && sr_scene_has_subsurface(scene) && !(i->model->enters_bodies && i->model->enters_bodies(i->self)))
+        return "translucent bodies (\"subsurface\") are taken for clear ones: the light that they scatter is missing";
+    return own;
+}
+
 bool sr_has_delta_lights(const struct sr_scene *scene)
 {
     const struct sr_lights *lights = sr_scene_lights(scene);

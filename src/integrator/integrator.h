@@ -33,6 +33,8 @@ struct sr_worker {
 
 /* A sample's numbers come in groups of four: the sensor's two (one pair, drawn together), then two for each bounce. */
 enum { SR_USE_FILM = 0, SR_USE_LENS = 1, SR_USE_BOUNCE = 2 };
+/* Added to the group of a bounce that goes through a body: one for where it comes out, then two as any bounce has. */
+#define SR_USE_SUBSURFACE 0x40000000u
 
 /* What a ray brings, and how wide it is: a sensor ray knows how it changes from pixel to pixel. */
 struct sr_path_start {
@@ -81,6 +83,7 @@ struct sr_integrator_model {
      * returns NULL: none. */
     const char *(*blind)(const void *self, const struct sr_scene *scene);
     const char *(*label)(const void *self); // what tells it from others of its kind; NULL: its name
+    bool (*enters_bodies)(const void *self); // follows light through translucent bodies; NULL: never, to it they are glass
 };
 extern const struct sr_integrator_model *const sr_integrator_models[]; // ends with NULL
 const struct sr_integrator_model *sr_integrator_model_find(const char *name);
@@ -104,12 +107,8 @@ static inline const char *sr_integrator_label(const struct sr_integrator *i)
 {
     return i->model->label ? i->model->label(i->self) : i->model->name;
 }
-static inline const char *sr_integrator_blind(const struct sr_integrator *i, const struct sr_scene *scene)
-{
-    if (sr_scene_has_media(scene) && !i->model->knows_media)
-        return "media are taken for vacuum, as by pbrt's estimators of that kind; volpath knows them";
-    return i->model->blind ? i->model->blind(i->self, scene) : NULL;
-}
+/* What the estimator itself says, or what holds for all of its kind. */
+const char *sr_integrator_blind(const struct sr_integrator *i, const struct sr_scene *scene);
 /* The strategies by number, NULL where they end. */
 const char *sr_strategy_name(int i);
 const char *sr_strategy_text(int i);
@@ -142,6 +141,12 @@ void sr_first_footprint(const struct sr_path_start *start, struct sr_point *x);
 void sr_seen_footprint(const struct sr_path_start *start, struct sr_point *x);
 /* The footprint at a surface of a path: a cone of that spread, whose width goes along, until the path is scattered. */
 void sr_path_footprint(const struct sr_path_start *start, struct sr_hit *x, bool is_first, bool is_scattered, float spread, float *width);
+
+/* A path that has been let into the body at x by its BSDF comes out of it elsewhere: x becomes that point, with the frame and
+ * the BSDF of the exit, where wo is the frame's z; beta is multiplied. b: sr_material_bssrdf at x. u: numbers of its own, such as
+ * the group SR_USE_SUBSURFACE of the bounce. false: the path ends. */
+bool sr_subsurface_step(const struct sr_scene *scene, const struct sr_bssrdf *b, sr_u4 u, struct sr_hit *x, const struct sr_wavelengths *w,
+                        struct sr_worker *worker, sr_spectrum *beta, struct sr_bsdf *bsdf, struct sr_frame *frame);
 
 /* Lights that are delta functions: no ray meets them. */
 bool sr_has_delta_lights(const struct sr_scene *scene);

@@ -7,10 +7,8 @@
  * weighed by their densities (Veach 1997, power heuristic). */
 #include "integrator/path.h"
 
-const struct sr_param sr_path_params[] = {
-    {SR_PARAM_INT, "maxdepth", "1", 0, 1e6, 5, offsetof(struct sr_path, max_depth), "most scatterings of a path"},
-    {SR_PARAM_ENUM, "lightsampler", "1", 0, 3, 0, offsetof(struct sr_path, light_sampler), "bvh|power|uniform|exhaustive"},
-    {SR_PARAM_BOOL, "regularize", "1", 0, 1, 0, offsetof(struct sr_path, regularize), "accepted; never done, for it is biased"},
+static const struct sr_param params[] = {
+    SR_PATH_PARAMS(0),
     {.name = NULL},
 };
 
@@ -52,6 +50,25 @@ static inline bool direct(const struct sr_lights *lights, const struct sr_point 
     return sr_spectrum_any(fL > 0.0f);
 }
 
+/* Light that s lets into a body at x comes out of it elsewhere: x, frame and bsdf are there from now on, s is how the path leaves
+ * it, and light straight from lights is added to L. beta is that of x before s. false: the path ends. */
+static __attribute__((noinline)) bool emerge(const struct sr_scene *scene, const struct sr_bssrdf *b, const struct sr_sampler *sampler, uint32_t group,
+                                             struct sr_wavelengths *w, struct sr_worker *worker, struct sr_hit *x, struct sr_frame *frame,
+                                             struct sr_bsdf *bsdf, struct sr_bsdf_sample *s, sr_spectrum *beta, sr_spectrum *L)
+{
+    sr_u4 u_light, u_bsdf;
+    sr_sample8(sampler, group + 1, &u_light, &u_bsdf);
+    *beta *= s->f * (sr_abs_cos_theta(s->wi) / s->pdf);
+    if (!sr_subsurface_step(scene, b, sr_sample4(sampler, group), x, w, worker, beta, bsdf, frame))
+        return false;
+    const sr_vec3 up = {0, 0, 1};
+    struct sr_light_sample l;
+    sr_spectrum L_direct;
+    if (direct(sr_scene_lights(scene), &x->point, frame, bsdf, up, u_light, w, &l, &L_direct) && sr_unoccluded(scene, &x->point, &l, worker))
+        *L += *beta * L_direct;
+    return sr_bsdf_sample(bsdf, up, u_bsdf[2], (sr_vec2){u_bsdf[0], u_bsdf[1]}, SR_RADIANCE, s);
+}
+
 static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
                           struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
 {
@@ -63,7 +80,7 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
     float pdf = INFINITY;       // density that chose ray.d                     [1/sr]; infinite: no light sampling could compete
     float eta_scale = 1;        // what refraction has made of beta, and will undo [1]
     bool is_scattered = false;  // by more than mirrors and clear glass
-    bool has_footprints = sr_scene_has_footprints(scene);
+    bool has_footprints = sr_scene_has_footprints(scene), has_subsurface = path->subsurface && sr_scene_has_subsurface(scene);
     float width = 0;            // of the path at its last surface              [m]
     float spread = has_footprints ? 0.5f * (sr_length(start->dddx) + sr_length(start->dddy)) : 0; // [1]
     struct sr_hit hits[2];      // where the path is now, and where it was scattered last
@@ -150,6 +167,10 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
             L += beta * L_direct;
         if (!goes_on)
             return L;
+        struct sr_bssrdf body;
+        if (SR_UNLIKELY(has_subsurface) && s.lobe & SR_LOBE_TRANSMISSION && sr_material_bssrdf(x->material, &x->point, sr_neg(ray.d), u_bsdf[3], seed, w, &body) &&
+            !emerge(scene, &body, sampler, SR_USE_SUBSURFACE + 3 * (uint32_t)bounce, w, worker, x, &frame, &bsdf, &s, &beta, &L))
+            return L;
         beta *= s.f * (sr_abs_cos_theta(s.wi) / s.pdf);
         pdf = s.lobe & SR_LOBE_SPECULAR ? INFINITY : s.pdf_is_proportional ? sr_bsdf_pdf(&bsdf, wo, s.wi, SR_RADIANCE) : s.pdf;
         if (s.lobe & SR_LOBE_TRANSMISSION)
@@ -174,4 +195,9 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
     }
 }
 
-const struct sr_integrator_model sr_integrator_path = {.name = "path", .text = "paths from the sensor; lights and BSDFs sampled and weighed by the power heuristic", .params = sr_path_params, .size = sizeof(struct sr_path), .L = path_L, .knows_receivers = true};
+bool sr_path_enters_bodies(const void *self)
+{
+    return ((const struct sr_path *)self)->subsurface;
+}
+
+const struct sr_integrator_model sr_integrator_path = {.name = "path", .text = "paths from the sensor; lights and BSDFs sampled and weighed by the power heuristic", .params = params, .size = sizeof(struct sr_path), .L = path_L, .knows_receivers = true, .enters_bodies = sr_path_enters_bodies};

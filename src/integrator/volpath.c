@@ -11,6 +11,11 @@
 
 enum { GROUPS = 3, MOST_PASSED = 1000 };
 
+static const struct sr_param params[] = {
+    SR_PATH_PARAMS(1),
+    {.name = NULL},
+};
+
 /* What stays the same along a path. */
 struct walk {
     const struct sr_scene *scene;
@@ -18,11 +23,13 @@ struct walk {
     struct sr_wavelengths w; // the path's own: what dispersion ends goes on being counted by those that look at the result
     struct sr_rng rng;
     struct sr_worker *worker;
+    bool has_bodies; // that are to be gone through
 };
 
-static struct walk walk_of(const struct sr_scene *scene, const struct sr_sampler *sampler, const struct sr_wavelengths *w, struct sr_worker *worker)
+static struct walk walk_of(const struct sr_path *path, const struct sr_scene *scene, const struct sr_sampler *sampler, const struct sr_wavelengths *w, struct sr_worker *worker)
 {
-    return (struct walk){scene, sr_scene_lights(scene), *w, sr_rng_seed((uint64_t)sampler->key << 32 | sampler->sample, SR_USE_BOUNCE), worker};
+    return (struct walk){scene, sr_scene_lights(scene), *w, sr_rng_seed((uint64_t)sampler->key << 32 | sampler->sample, SR_USE_BOUNCE), worker,
+                         path->subsurface && sr_scene_has_subsurface(scene)};
 }
 
 // dispersion has left the first wavelength alone: it counts for all, and no other would have drawn what is still to come
@@ -96,6 +103,27 @@ static bool survives(struct sr_carried *c, float eta_scale, int bounce, float u)
     float survive = sr_max(carried, 0.05f);
     c->f *= 1 / survive;
     return u < survive;
+}
+
+/* Light that s lets into a body at x comes out of it elsewhere, into the same medium: x, frame and bsdf are there from now on, and s
+ * is how the path leaves it. false: the path ends. */
+static bool emerge(struct walk *k, const struct sr_bssrdf *body, const struct sr_sampler *sampler, uint32_t group, const struct sr_medium *medium,
+                   struct sr_hit *x, struct sr_frame *frame, struct sr_bsdf *bsdf, struct sr_bsdf_sample *s, struct sr_carried *c)
+{
+    sr_u4 u_light, u_scatter;
+    sr_sample8(sampler, group + 1, &u_light, &u_scatter);
+    c->f *= s->f * (sr_abs_cos_theta(s->wi) / s->pdf);
+    if (!sr_subsurface_step(k->scene, body, sr_sample4(sampler, group), x, &k->w, k->worker, &c->f, bsdf, frame))
+        return false;
+    const sr_vec3 up = {0, 0, 1};
+    struct arriving a;
+    if (draw_light(k, &x->point, u_light, &a)) {
+        sr_vec3 wi = sr_to_local(frame, a.l.wi);
+        float pdf;
+        sr_spectrum f = sr_bsdf_f_pdf(bsdf, up, wi, SR_RADIANCE, &pdf);
+        receive(k, &x->point, sr_hit_medium(x, a.l.wi, medium), &a, f * sr_abs_cos_theta(wi), pdf, c);
+    }
+    return sr_bsdf_sample(bsdf, up, u_scatter[2], (sr_vec2){u_scatter[0], u_scatter[1]}, SR_RADIANCE, s);
 }
 
 static sr_spectrum walk(struct walk *k, int max_depth, const struct sr_path_start *start, const struct sr_sampler *sampler, struct sr_hit *first)
@@ -172,6 +200,7 @@ static sr_spectrum walk(struct walk *k, int max_depth, const struct sr_path_star
             receive_from_hit(k, &from, ray.d, &x, &c);
         struct sr_bsdf bsdf = {.model = NULL};
         struct sr_frame frame;
+        uint32_t seed = sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu;
         if (x.material && bounce == max_depth)
             return c.L;
         if (x.material) {
@@ -179,7 +208,6 @@ static sr_spectrum walk(struct walk *k, int max_depth, const struct sr_path_star
                 sr_path_footprint(start, &x, bounce == 0, is_scattered, spread, &width);
             if (first && bounce == 0)
                 first->point = x.point;
-            uint32_t seed = sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu;
             bool was_whole = !sr_wavelengths_secondary_terminated(&k->w);
             if (x.is_plain)
                 sr_material_shade_plain(x.material, x.lambert, &x.point, sr_neg(ray.d), u_scatter[3], seed, &k->w, &bsdf, &frame);
@@ -211,6 +239,11 @@ static sr_spectrum walk(struct walk *k, int max_depth, const struct sr_path_star
         struct sr_bsdf_sample s;
         if (!sr_bsdf_sample(&bsdf, wo, u_scatter[2], (sr_vec2){u_scatter[0], u_scatter[1]}, SR_RADIANCE, &s))
             return c.L;
+        struct sr_bssrdf body;
+        if (SR_UNLIKELY(k->has_bodies) && s.lobe & SR_LOBE_TRANSMISSION &&
+            sr_material_bssrdf(x.material, &x.point, sr_neg(ray.d), u_scatter[3], seed, &k->w, &body) &&
+            !emerge(k, &body, sampler, SR_USE_SUBSURFACE + 3 * (uint32_t)bounce, medium, &x, &frame, &bsdf, &s, &c))
+            return c.L;
         c.f *= s.f * (sr_abs_cos_theta(s.wi) / s.pdf);
         bool is_specular = s.lobe & SR_LOBE_SPECULAR;
         float pdf = s.pdf_is_proportional ? sr_bsdf_pdf(&bsdf, wo, s.wi, SR_RADIANCE) : s.pdf;
@@ -231,7 +264,7 @@ static sr_spectrum volpath_L(const void *self, const struct sr_scene *scene, con
 {
     if (!sr_scene_has_media(scene))
         return sr_integrator_path.L(self, scene, start, sampler, w, first, worker);
-    struct walk k = walk_of(scene, sampler, w, worker);
+    struct walk k = walk_of(self, scene, sampler, w, worker);
     return walk(&k, ((const struct sr_path *)self)->max_depth, start, sampler, first);
 }
 
@@ -239,7 +272,7 @@ static sr_spectrum volpath_L(const void *self, const struct sr_scene *scene, con
 static sr_spectrum gather(const void *self, const struct sr_scene *scene, const struct sr_receiver *receiver, const struct sr_sampler *sampler,
                           struct sr_wavelengths *w, struct sr_worker *worker)
 {
-    struct walk k = walk_of(scene, sampler, w, worker);
+    struct walk k = walk_of(self, scene, sampler, w, worker);
     const struct sr_point *x = &receiver->x;
     sr_u4 u, u_light;
     sr_sample8(sampler, SR_USE_FILM, &u, &u_light);
@@ -262,6 +295,6 @@ static sr_spectrum gather(const void *self, const struct sr_scene *scene, const 
 }
 
 const struct sr_integrator_model sr_integrator_volpath = {
-    .name = "volpath", .text = "path through media, too: null collisions, all wavelengths weighed", .params = sr_path_params, .size = sizeof(struct sr_path),
-    .L = volpath_L, .gather = gather, .knows_media = true,
+    .name = "volpath", .text = "path through media, too: null collisions, all wavelengths weighed", .params = params, .size = sizeof(struct sr_path),
+    .L = volpath_L, .gather = gather, .knows_media = true, .enters_bodies = sr_path_enters_bodies,
 };

@@ -4,6 +4,7 @@
 #define SR_MATERIAL_MATERIAL_H
 
 #include "bsdf/bsdf.h"
+#include "subsurface/subsurface.h"
 #include "texture/texture.h"
 
 /* All that a material may look at. */
@@ -34,6 +35,9 @@ struct sr_material_model {
     bool is_isotropic; // unless it has a roughness of its own along the tangent: "uroughness" or "vroughness" in a name
     /* mix: the part that is here, and what is left of the uniform number; NULL for all others */
     const struct sr_material *(*choose)(const void *self, struct sr_material_context *c);
+    /* Light that the BSDF lets in comes out elsewhere, by this. false: not here. NULL: never. */
+    bool (*bssrdf)(const void *self, const struct sr_material_context *c, struct sr_bssrdf *out);
+    const char *(*remark)(const void *self); // once prepared: one sentence on what is given in vain; NULL, or returns NULL
 };
 const struct sr_material_model *sr_material_model(int i); // all that scenes may name, the i-th; NULL past the end
 const struct sr_material_model *sr_material_model_find(const char *name);
@@ -69,5 +73,11 @@ static inline void sr_material_shade_plain(const struct sr_material *material, c
  * model. out->model NULL: interface. */
 void sr_material_shade(const struct sr_material *material, struct sr_point *x, sr_vec3 wo, float u, uint32_t seed,
                        struct sr_wavelengths *w, struct sr_bsdf *out, struct sr_frame *frame);
+
+/* The BSSRDF at x, as sr_material_shade with the same numbers has left it (mixes choose alike). false: there is none. */
+bool sr_material_bssrdf(const struct sr_material *material, struct sr_point *x, sr_vec3 wo, float u, uint32_t seed, struct sr_wavelengths *w,
+                        struct sr_bssrdf *out);
+/* Whether the material, or one that it is mixed of, has one. */
+bool sr_material_has_bssrdf(const struct sr_material *material);
 
 #endif

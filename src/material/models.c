@@ -9,7 +9,8 @@ static const struct sr_material_model *const own[] = {
     &sr_material_conductor,        &sr_material_dielectric,
     &sr_material_thin_dielectric,  &sr_material_coated_diffuse,
     &sr_material_coated_conductor, &sr_material_mix,
-    &sr_material_interface,
+    &sr_material_interface,        &sr_material_hair,
+    &sr_material_subsurface,
 };
 enum { OWN = sizeof own / sizeof own[0] };
 
@@ -18,7 +19,7 @@ static bool is_bound_here(const struct sr_bsdf_model *b)
 {
     return b == &sr_bsdf_diffuse || b == &sr_bsdf_diffuse_transmission || b == &sr_bsdf_conductor ||
            b == &sr_bsdf_dielectric || b == &sr_bsdf_thin_dielectric || b == &sr_bsdf_coated_diffuse ||
-           b == &sr_bsdf_coated_conductor;
+           b == &sr_bsdf_coated_conductor || b == &sr_bsdf_hair;
 }
 
 const struct sr_material_model *sr_material_model(int i)

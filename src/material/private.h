@@ -10,7 +10,7 @@
 
 extern const struct sr_material_model sr_material_diffuse, sr_material_diffuse_transmission, sr_material_conductor,
     sr_material_dielectric, sr_material_thin_dielectric, sr_material_coated_diffuse, sr_material_coated_conductor,
-    sr_material_mix, sr_material_interface;
+    sr_material_mix, sr_material_interface, sr_material_hair, sr_material_subsurface;
 
 /* A spectrum. */
 struct bound_spectrum {

@@ -139,13 +139,44 @@ bool sr_material_is_plain(const struct sr_material *material)
     return true;
 }
 
+static const struct sr_material *chosen(const struct sr_material *material, struct sr_material_context *c)
+{
+    for (int depth = 0; material && material->model && material->model->choose; ++depth)
+        material = depth < MIX_DEPTH ? material->model->choose(material->self, c) : NULL;
+    return material;
+}
+
+bool sr_material_bssrdf(const struct sr_material *material, struct sr_point *x, sr_vec3 wo, float u, uint32_t seed, struct sr_wavelengths *w,
+                        struct sr_bssrdf *out)
+{
+    struct sr_material_context c = {x, wo, w, u, seed};
+    material = chosen(material, &c);
+    return material && material->model && material->model->bssrdf && material->model->bssrdf(material->self, &c, out);
+}
+
+bool sr_material_has_bssrdf(const struct sr_material *material)
+{
+    if (!material || !material->model)
+        return false;
+    if (material->model->bssrdf)
+        return true;
+    for (const struct sr_param *p = material->model->params; p && p->name; ++p) {
+        struct sr_slice parts;
+        if (p->kind != SR_PARAM_MATERIALS)
+            continue;
+        memcpy(&parts, (const char *)material->self + p->offset, sizeof parts);
+        for (uint32_t i = 0; i < parts.count; ++i)
+            if (sr_material_has_bssrdf(((const struct sr_material *const *)parts.data)[i]))
+                return true;
+    }
+    return false;
+}
+
 void sr_material_shade(const struct sr_material *material, struct sr_point *x, sr_vec3 wo, float u, uint32_t seed,
                        struct sr_wavelengths *w, struct sr_bsdf *out, struct sr_frame *frame)
 {
     struct sr_material_context c = {x, wo, w, u, seed};
-    for (int depth = 0; material && material->model && material->model->choose; ++depth)
-        material = depth < MIX_DEPTH ? material->model->choose(material->self, &c) : NULL;
-
+    material = chosen(material, &c);
     if (SR_UNLIKELY(!material || !material->model)) {
         out->model = NULL;
     } else {

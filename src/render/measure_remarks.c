@@ -98,7 +98,7 @@ static void tell_nothing_found(const struct measuring *m, const struct surroundi
 void measure_remarks(const struct measuring *m, struct sr_measurement *out)
 {
     const struct sr_integrator_model *integrator = m->job->integrator.model;
-    const char *blind = integrator->blind ? integrator->blind(m->job->integrator.self, m->job->scene) : NULL;
+    const char *blind = sr_integrator_blind(&m->job->integrator, m->job->scene);
     if (blind)
         remark(out, "%s", blind);
     if (integrator->splat && m->meter->model->is_ray && m->meter->model->is_ray(m->meter->self))

@@ -39,7 +39,7 @@ struct instance {
 struct sr_scene {
     struct sr_arena arena;
     struct sr_error error;
-    bool is_finished, has_footprints, has_media, has_interfaces;
+    bool is_finished, has_footprints, has_media, has_subsurface, has_interfaces;
     struct sr_medium sensor_medium;
     const struct sr_medium *around; // beyond all surfaces; NULL: vacuum
     struct sr_array objects;        // struct object *

@@ -177,6 +177,7 @@ static void place_shapes(struct sr_scene *scene, struct object *object, bool is_
             .lambert = sr_material_lambert(material_number ? def->material : NULL),
             .is_plain = sr_material_is_plain(material_number ? def->material : NULL) && !(has_light && def->emission->texels.width)};
         scene->has_footprints |= object->shapes[object->shape_count - 1].has_footprint;
+        scene->has_subsurface |= sr_material_has_bssrdf(def->material);
     }
     sr_array_free(&object->defs);
 }
@@ -236,6 +237,11 @@ const struct sr_lights *sr_scene_lights(const struct sr_scene *scene)
 struct sr_box sr_scene_bounds(const struct sr_scene *scene)
 {
     return scene->bounds;
+}
+
+bool sr_scene_has_subsurface(const struct sr_scene *scene)
+{
+    return scene->has_subsurface;
 }
 
 bool sr_scene_has_mirrors(const struct sr_scene *scene)

@@ -18,7 +18,7 @@ FLOORS = [
     ["math"],
     ["spectrum", "sample"],
     ["measured", "quantity"],
-    ["texture", "bsdf", "medium", "shape", "sensor", "meter", "film", "image", "plot"],
+    ["texture", "bsdf", "subsurface", "medium", "shape", "sensor", "meter", "film", "image", "plot"],
     ["material", "light"],
     ["scene"],
     ["integrator"],

@@ -67,6 +67,9 @@ static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, s
     material->self = self;
     material->displacement = common.displacement;
     sr_pbrt_warn_unused(b, e, m->params, common_params);
+    const char *remark = m->remark ? m->remark(self) : NULL;
+    if (remark)
+        sr_pbrt_warn(b->d, e->where, "%s \"%s\": %s", e->directive, e->model, remark);
     *out = material;
     return SR_OK;
 }

@@ -66,10 +66,10 @@ TEST(what_is_not_supported_says_so_and_what_is)
     expect_error("WorldBegin\nShape \"cone\"", "2:1: Shape \"cone\" is not supported yet; supported: trianglemesh, "
                                                "bilinearmesh, sphere, disk, cylinder, loopsubdiv, plymesh");
     expect_error(
-        "WorldBegin\nMaterial \"subsurface\"\n" BALL,
-        "2:1: Material \"subsurface\" is not supported yet; supported: diffuse, diffusetransmission, conductor, "
-        "dielectric, thindielectric, coateddiffuse, coatedconductor, mix, interface, and the models of 'steradian "
-        "brdf list'");
+        "WorldBegin\nMaterial \"velvet\"\n" BALL,
+        "2:1: Material \"velvet\" is not supported yet; supported: diffuse, diffusetransmission, conductor, "
+        "dielectric, thindielectric, coateddiffuse, coatedconductor, mix, interface, hair, subsurface, and the models of "
+        "'steradian brdf list'");
     expect_error("WorldBegin\nLightSource \"projection\"",
                  "2:1: LightSource \"projection\" is not supported yet; supported: point, spot, ies, distant, infinite");
     expect_error("Camera \"realistic\"\nWorldBegin",
