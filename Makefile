@@ -6,7 +6,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 OUT ?= out
 SECONDS ?= 60
 
-.PHONY: all render test test-asan test-tsan fuzz mutants validate bench check format install clean packages
+.PHONY: all render test test-asan test-tsan fuzz mutants validate bench check format format-reference install clean packages
 
 all: packages
 	@cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release >$(BUILD).log 2>&1 || { cat $(BUILD).log; exit 1; }
@@ -61,6 +61,10 @@ check: all
 # docs/figures and docs/theory, anew from the models' tables and sources
 figures: all
 	scripts/make-figures --command $(BUILD)/steradian
+
+# docs/format.md, anew from the tables by which scenes are read
+format-reference: all
+	$(BUILD)/steradian formats --markdown >docs/format.md
 
 format:
 	git ls-files '*.c' '*.h' | xargs clang-format -i

@@ -48,6 +48,13 @@ static void tell_settings(visitor *visit, void *context)
         tell(visit, context, "Integrator", sr_integrator_models[i]->name, sr_integrator_models[i]->params);
 }
 
+static void tell_textures(visitor *visit, void *context, const char *kind, bool is_float, bool is_spectrum)
+{
+    for (int i = 0; sr_texture_models[i]; ++i)
+        if (sr_texture_models[i]->is_float == is_float && sr_texture_models[i]->is_spectrum == is_spectrum)
+            tell(visit, context, kind, sr_texture_models[i]->name, sr_texture_models[i]->params);
+}
+
 void sr_import_plugins(visitor *visit, void *context)
 {
     const struct sr_material_model *m;
@@ -60,11 +67,10 @@ void sr_import_plugins(visitor *visit, void *context)
     tell(visit, context, "Material", "", sr_pbrt_material_params);
     for (int i = 0; (m = sr_material_model(i)); ++i)
         tell(visit, context, "Material", m->name, m->params);
-    for (int i = 0; sr_texture_models[i]; ++i) { // one for floats and one for spectra, or one for both
-        const struct sr_texture_model *t = sr_texture_models[i];
-        tell(visit, context, t->is_float && t->is_spectrum ? "Texture" : t->is_float ? "Texture float" : "Texture spectrum", t->name, t->params);
-    }
     tell(visit, context, "Texture", "", sr_mapping_params);
+    tell_textures(visit, context, "Texture", true, true);
+    tell_textures(visit, context, "Texture float", true, false);
+    tell_textures(visit, context, "Texture spectrum", false, true);
     for (int i = 0; sr_light_models[i]; ++i)
         tell(visit, context, "LightSource", sr_light_models[i]->name, sr_light_models[i]->params);
     tell(visit, context, "AreaLightSource", "diffuse", sr_light_emission_params);
