@@ -60,7 +60,7 @@ static sr_status read_accelerator(struct sr_pbrt_parser *p)
 static sr_status read_option(struct sr_pbrt_parser *p)
 {
     struct sr_pbrt_params params;
-    sr_status status = sr_pbrt_params_read(p->d, p->lexer, &p->scratch, p->state.space, no_defaults, &params, p->error);
+    sr_status status = sr_pbrt_option_read(p->d, p->lexer, &p->scratch, &params, p->error);
     if (status == SR_OK && params.count != 1)
         return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT,
                             "Option: expected one \"type name\" and its value");

@@ -40,10 +40,10 @@ static bool is_annotation(const char *p)
 /* p at the # of a comment: the character before its line's end. */
 static const char *skip_comment(struct sr_pbrt_lexer *l, const char *p)
 {
-    if (l->annotations && is_annotation(p)) {
+    if (l->annotations && (l->keeps_comments || is_annotation(p))) {
         struct sr_pbrt_annotation *a = sr_array_push(l->annotations, sizeof *a);
         if (a)
-            *a = (struct sr_pbrt_annotation){p + 2, l->line_start, l->line};
+            *a = (struct sr_pbrt_annotation){l->keeps_comments ? p : p + 2, l->line_start, l->line};
     }
     const char *newline = memchr(p, '\n', (size_t)(l->end - p));
     return newline ? newline - 1 : l->end - 1;

@@ -31,6 +31,7 @@ struct sr_pbrt_lexer {
     struct sr_pbrt_token next_token;
     bool is_annotation;           // it reads the words of comments "#@ …" alone, and ends with the last of them
     struct sr_array *annotations; // NULL, or struct sr_pbrt_annotation: where comments "#@" have been passed
+    bool keeps_comments;          // annotations takes all comments, whose p is then at the #
 };
 
 /* A comment that begins with #@ says something to this program that pbrt does not know. */
