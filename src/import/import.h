@@ -61,6 +61,19 @@ sr_status sr_import_pbrt(const char *path, const struct sr_import_options *optio
                          struct sr_log *log, struct sr_error *error);
 void sr_import_result_free(struct sr_import_result *result);
 
+/* ---- scenes as text ---- */
+
+struct sr_convert_options {
+    const char *out;      // where the text will lie, for the names of files in it; "-": in the current folder
+    bool upgrades;        // from pbrt-v3
+    bool flattens;        // text of included files takes the place of Include and Import
+    uint32_t ply_above;   // triangle meshes of more vertices become PLY files beside the text; 0: none does
+    bool for_steradian;   // materials and textures that pbrt does not know stay as they are; else the nearest that it knows
+};
+/* A scene of any format as pbrt-v4 text, which is read back before it is given. Free *text with sr_free. */
+sr_status sr_convert(const char *path, const struct sr_convert_options *options, char **text, size_t *size, struct sr_log *log,
+                     struct sr_error *error);
+
 /* One material of a scene, without the rest: by the name of its MakeNamedMaterial, or "#2" for the second Material directive.
  * NULL in *out: an interface. Everything is kept in the arena. */
 sr_status sr_import_pbrt_material(const char *path, const char *name, struct sr_arena *arena,

@@ -7,9 +7,6 @@
 
 #include "import/pbrt/statement.h"
 
-#include <limits.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { MAX_DEPTH = 64, WORDS_KEPT_B = 4 << 20 };
@@ -22,7 +19,7 @@ struct formatter {
     const struct sr_convert_options *o;
     struct sr_pbrt_upgrade upgrade;
     struct sr_print *out;
-    const char *out_folder; // absolute; NULL: names stay as they are
+    bool is_moved; // the text will lie in another folder
     uint32_t mesh_count;
     int nesting;
     bool may_trail; // the line that was printed last belongs to the statement before the comment
@@ -34,30 +31,6 @@ static sr_status no_memory(struct formatter *f)
 }
 
 /* ---- names of files ---- */
-
-/* Both absolute: the way from a folder to a file. */
-static const char *way(struct sr_arena *arena, const char *folder, const char *file)
-{
-    size_t common = 0;
-    for (size_t i = 0; folder[i] && folder[i] == file[i]; ++i)
-        if (file[i + 1] == '/' && (folder[i + 1] == '/' || folder[i + 1] == 0))
-            common = i + 1;
-    char up[PATH_MAX] = "";
-    for (const char *c = folder + common; *c; ++c)
-        if (*c == '/' && c[1] && strlen(up) + 4 < sizeof up)
-            strcat(up, "../");
-    return sr_arena_printf(arena, "%s%s", up, file + common + (file[common] == '/'));
-}
-
-static bool absolute_folder(const char *path, char folder[PATH_MAX])
-{
-    char text[PATH_MAX];
-    const char *slash = strrchr(path, '/');
-    if (slash && (size_t)(slash - path) + 2 > sizeof text)
-        return false;
-    snprintf(text, sizeof text, "%.*s", slash ? (int)(slash - path) + 1 : 1, slash ? path : ".");
-    return realpath(text, folder) != NULL;
-}
 
 /* The file that a name means is found as the reader finds it; NULL: there is none. */
 static const char *find_file(struct formatter *f, const char *name, struct sr_location where)
@@ -71,13 +44,7 @@ static const char *find_file(struct formatter *f, const char *name, struct sr_lo
 
 static const char *moved(struct formatter *f, const char *name, struct sr_location where)
 {
-    char folder[PATH_MAX];
-    const char *path = f->out_folder && name[0] && name[0] != '/' ? find_file(f, name, where) : NULL;
-    if (!path || !absolute_folder(path, folder))
-        return name;
-    const char *last = strrchr(path, '/');
-    const char *whole = sr_arena_printf(&f->data, "%s/%s", strcmp(folder, "/") == 0 ? "" : folder, last ? last + 1 : path);
-    const char *text = whole ? way(&f->data, f->out_folder, whole) : NULL;
+    const char *path = f->is_moved && name[0] && name[0] != '/' ? find_file(f, name, where) : NULL, *text = path ? sr_path_seen_from(&f->data, f->o->out, path) : NULL;
     return text ? text : name;
 }
 
@@ -113,28 +80,10 @@ static sr_status move_names(struct formatter *f, struct sr_pbrt_statement *s)
 static sr_status set_mesh_apart(struct formatter *f, struct sr_pbrt_statement *s)
 {
     struct sr_print_mesh mesh;
-    if (!f->o->ply_above || strcmp(s->word, "Shape") != 0 || !sr_print_is_mesh(s->strings[0], &s->params, f->o->ply_above - 1, &mesh))
+    if (!f->o->ply_above || strcmp(s->word, "Shape") != 0 || !sr_print_is_mesh(s->strings[0], &s->params, f->o->ply_above, &mesh))
         return SR_OK;
-    const char *name = sr_convert_mesh_name(&f->data, f->o->out, ++f->mesh_count), *slash = name ? strrchr(name, '/') : NULL;
-    struct sr_pbrt_param *items = sr_pbrt_words(&f->d, (s->params.count + 1) * sizeof *items);
-    const char **text = sr_pbrt_words(&f->d, sizeof *text);
-    if (!name || !items || !text)
-        return no_memory(f);
-    sr_status status = sr_print_ply(name, &mesh, f->p.error);
-    *text = slash ? slash + 1 : name;
-    items[0] = (struct sr_pbrt_param){.type = SR_PBRT_STRING_TYPE, .name = "filename", .count = 1, .strings = text};
-    uint32_t count = 1;
-    for (uint32_t i = 0; i < s->params.count; ++i) {
-        static const char *const gone[] = {"P", "N", "uv", "indices", "faceIndices"};
-        bool is_gone = false;
-        for (size_t k = 0; k < sizeof gone / sizeof *gone; ++k)
-            is_gone = is_gone || strcmp(s->params.items[i].name, gone[k]) == 0;
-        if (!is_gone)
-            items[count++] = s->params.items[i];
-    }
-    s->params = (struct sr_pbrt_params){items, count};
-    s->strings[0] = "plymesh";
-    return status;
+    const char *name = sr_convert_mesh_name(&f->data, f->o->out, ++f->mesh_count);
+    return name ? sr_print_mesh_apart(&f->d, name, &mesh, &s->strings[0], &s->params, f->p.error) : no_memory(f);
 }
 
 /* ---- statements ---- */
@@ -362,7 +311,8 @@ static sr_status format_text(struct formatter *f, const char *path, const char *
                 status = print_comments(f, text, &c[i], 1, true);
         if (status == SR_OK)
             status = print_comments(f, text, c + inner, comments.count - inner, true);
-        forget_statement(f);
+        if (next.kind != SR_PBRT_STRING) // which may lie in the words
+            forget_statement(f);
     }
     f->p.lexer = outer;
     sr_array_free(&comments);
@@ -393,12 +343,10 @@ static sr_status format_file(struct formatter *f, const char *path, struct sr_lo
 sr_status sr_pbrt_format(const char *path, const struct sr_convert_options *o, struct sr_print *out, struct sr_log *log, struct sr_error *error)
 {
     struct formatter f = {.o = o, .out = out};
-    char in_folder[PATH_MAX], out_folder[PATH_MAX];
     f.d = (struct sr_pbrt_description){.data = &f.data, .log = log};
     f.p = (struct sr_pbrt_parser){.d = &f.d, .error = error, .main_path = path};
     f.upgrade.arena = &f.keep;
-    bool is_known = absolute_folder(o->out, out_folder) && absolute_folder(path, in_folder);
-    f.out_folder = is_known && strcmp(in_folder, out_folder) != 0 ? out_folder : NULL;
+    f.is_moved = !sr_path_same_folder(path, o->out);
     sr_status status = format_file(&f, path, (struct sr_location){0});
     if (status == SR_OK && out->depth != 0)
         status = sr_fail(error, SR_ERROR_INPUT, "%s: the file ends, and not all of AttributeBegin, ObjectBegin and TransformBegin have their end", path);

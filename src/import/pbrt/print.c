@@ -237,7 +237,7 @@ static void put(struct sr_print *out, const void *data, uint32_t words)
     }
 }
 
-sr_status sr_print_ply(const char *path, const struct sr_print_mesh *mesh, struct sr_error *error)
+static sr_status write_ply(const char *path, const struct sr_print_mesh *mesh, struct sr_error *error)
 {
     struct sr_print out = {0};
     char head[512];
@@ -263,4 +263,26 @@ sr_status sr_print_ply(const char *path, const struct sr_print_mesh *mesh, struc
     sr_status status = out.has_failed ? sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", path) : sr_file_write(path, out.text, out.size, error);
     sr_free(out.text);
     return status;
+}
+
+sr_status sr_print_mesh_apart(struct sr_pbrt_description *d, const char *path, const struct sr_print_mesh *mesh, const char **model,
+                              struct sr_pbrt_params *params, struct sr_error *error)
+{
+    static const char *const gone[] = {"P", "N", "uv", "indices", "faceIndices"};
+    struct sr_pbrt_param *items = sr_pbrt_words(d, (params->count + 1) * sizeof *items);
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, **text = sr_pbrt_words(d, sizeof *text);
+    if (!items || !text || !(*text = sr_pbrt_text(d, name, strlen(name))))
+        return sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", path);
+    items[0] = (struct sr_pbrt_param){.type = SR_PBRT_STRING_TYPE, .name = "filename", .count = 1, .strings = text};
+    uint32_t count = 1;
+    for (uint32_t i = 0; i < params->count; ++i) {
+        bool is_gone = false;
+        for (size_t k = 0; k < sizeof gone / sizeof *gone; ++k)
+            is_gone = is_gone || strcmp(params->items[i].name, gone[k]) == 0;
+        if (!is_gone)
+            items[count++] = params->items[i];
+    }
+    *params = (struct sr_pbrt_params){items, count};
+    *model = "plymesh";
+    return write_ply(path, mesh, error);
 }

@@ -31,8 +31,10 @@ struct sr_print_mesh {
     const int32_t *faces;    // a number for each triangle, or NULL
     uint32_t vertex_count, triangle_count;
 };
-sr_status sr_print_ply(const char *path, const struct sr_print_mesh *mesh, struct sr_error *error);
 /* Whether a shape is a mesh that a PLY file can hold, of more than that many vertices. */
 bool sr_print_is_mesh(const char *model, const struct sr_pbrt_params *params, uint32_t more_than, struct sr_print_mesh *mesh);
+/* Writes it, and makes a shape "plymesh" of it, whose words d holds. The scene lies in the file's folder. */
+sr_status sr_print_mesh_apart(struct sr_pbrt_description *d, const char *path, const struct sr_print_mesh *mesh, const char **model,
+                              struct sr_pbrt_params *params, struct sr_error *error);
 
 #endif
