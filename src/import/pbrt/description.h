@@ -166,6 +166,7 @@ struct sr_pbrt_description {
 
     struct sr_pbrt_names object_names, material_names, medium_names, float_textures, spectrum_textures;
 
+    bool reads_v3; // knows types of parameters that pbrt-v3 had: color, xyz
     size_t text_B; // that has been read
     uint64_t hash; // of it
 };

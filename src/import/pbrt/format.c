@@ -125,6 +125,12 @@ static bool ends_with(const char *word, const char *end)
     return n >= m && strcmp(word + n - m, end) == 0;
 }
 
+static sr_status upgrade(struct formatter *f, struct sr_pbrt_statement *s)
+{
+    f->upgrade.s = s;
+    return sr_pbrt_upgrade(&f->upgrade);
+}
+
 static sr_status print_statement(struct formatter *f, struct sr_pbrt_statement *s)
 {
     bool is_include = strcmp(s->word, "Include") == 0, is_import = strcmp(s->word, "Import") == 0;
@@ -137,7 +143,7 @@ static sr_status print_statement(struct formatter *f, struct sr_pbrt_statement *
         s->strings[0] = moved(f, s->strings[0], s->where);
     sr_status status = move_names(f, s);
     if (status == SR_OK && f->o->upgrades)
-        status = sr_pbrt_upgrade(&f->upgrade, &f->p, s);
+        status = upgrade(f, s);
     if (status == SR_OK)
         status = set_mesh_apart(f, s);
     if (status != SR_OK || s->is_dropped || strcmp(s->word, "WorldEnd") == 0)
@@ -345,7 +351,8 @@ sr_status sr_pbrt_format(const char *path, const struct sr_convert_options *o, s
     struct formatter f = {.o = o, .out = out};
     f.d = (struct sr_pbrt_description){.data = &f.data, .log = log};
     f.p = (struct sr_pbrt_parser){.d = &f.d, .error = error, .main_path = path};
-    f.upgrade.arena = &f.keep;
+    f.d.reads_v3 = o->upgrades;
+    f.upgrade = (struct sr_pbrt_upgrade){.p = &f.p, .out = out, .for_steradian = o->for_steradian, .arena = &f.keep};
     f.is_moved = !sr_path_same_folder(path, o->out);
     sr_status status = format_file(&f, path, (struct sr_location){0});
     if (status == SR_OK && out->depth != 0)

@@ -33,6 +33,11 @@ static const struct type_row {
     {"vector", SR_PBRT_VECTOR3, FLOATS, 3},
     {NULL, 0, 0, 0},
 };
+static const struct type_row v3_types[] = {
+    {"color", SR_PBRT_RGB, FLOATS, 3},
+    {"xyz", SR_PBRT_RGB, FLOATS, 3},
+    {NULL, 0, 0, 0},
+};
 
 const char *sr_pbrt_type_name(enum sr_pbrt_type type)
 {
@@ -53,6 +58,13 @@ void sr_pbrt_scratch_free(struct sr_pbrt_scratch *s)
 static bool is_space(char c)
 {
     return c == ' ' || c == '\t';
+}
+
+static const struct type_row *find_type(const struct type_row *t, const char *word, size_t length)
+{
+    while (t->word && !(strlen(t->word) == length && memcmp(t->word, word, length) == 0))
+        ++t;
+    return t->word ? t : NULL;
 }
 
 /* "type name" into its two words */
@@ -78,14 +90,15 @@ static sr_status split_declaration(struct sr_pbrt_description *d, const struct s
         return sr_pbrt_fail(d, token->where, error, SR_ERROR_INPUT,
                             "parameter \"%.*s\": expected \"type name\", such as \"float radius\"",
                             token->length > 80 ? 80 : (int)token->length, token->text);
-    for (const struct type_row *t = types; t->word; ++t)
-        if (strlen(t->word) == (size_t)(b - a) && memcmp(t->word, a, (size_t)(b - a)) == 0) {
-            *row = t;
-            p->type = t->type;
-            p->where = token->where;
-            p->name = sr_pbrt_text(d, c, (size_t)(name_end - c));
-            return p->name ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", token->where.file);
-        }
+    *row = find_type(types, a, (size_t)(b - a));
+    if (!*row && d->reads_v3)
+        *row = find_type(v3_types, a, (size_t)(b - a));
+    if (*row) {
+        p->type = (*row)->type;
+        p->where = token->where;
+        p->name = sr_pbrt_text(d, c, (size_t)(name_end - c));
+        return p->name ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", token->where.file);
+    }
     char buffer[160], word[64];
     size_t n = (size_t)(b - a) < sizeof word - 1 ? (size_t)(b - a) : sizeof word - 1;
     memcpy(word, a, n);
@@ -272,6 +285,21 @@ static sr_status check_values(struct sr_pbrt_description *d, const struct sr_pbr
     return SR_OK;
 }
 
+/* what sRGB cannot show is cut off */
+static void xyz_to_rgb(struct sr_array *values)
+{
+    const struct sr_colour_space *space = sr_colour_space(SR_SRGB);
+    float *v = values->data;
+    for (size_t i = 0; i + 2 < values->count; i += 3) {
+        double xyz[3] = {(double)v[i], (double)v[i + 1], (double)v[i + 2]};
+        for (int k = 0; k < 3; ++k) {
+            const double *row = space->rgb_from_xyz[k];
+            double c = row[0] * xyz[0] + row[1] * xyz[1] + row[2] * xyz[2];
+            v[i + (size_t)k] = c > 0 ? (float)c : 0;
+        }
+    }
+}
+
 static sr_status read_param(struct sr_pbrt_description *d, struct sr_pbrt_lexer *lexer, struct sr_pbrt_scratch *scratch,
                             enum sr_colour_space_id space, struct sr_pbrt_param *p, struct sr_error *error)
 {
@@ -285,6 +313,8 @@ static sr_status read_param(struct sr_pbrt_description *d, struct sr_pbrt_lexer 
     p->space = space;
     enum storage storage = row->storage;
     status = read_values(d, lexer, p, &storage, scratch, error);
+    if (status == SR_OK && row == &v3_types[1])
+        xyz_to_rgb(&scratch->floats);
     if (status == SR_OK)
         status = keep_values(d, p, storage, scratch, error);
     return status == SR_OK ? check_values(d, p, row->arity, error) : status;
