@@ -256,7 +256,8 @@ TEST(upgrade_materials_of_pbrt_v3)
          "Material \"diffuse\" \"rgb reflectance\" [.9 .9 .9]\n"},
         {"Texture \"t\" \"color\" \"checkerboard\" \"color tex1\" [.2 .2 .2] \"color tex2\" [.8 .8 .8] \"float uscale\" 4\n"
          "Texture \"s\" \"color\" \"scale\" \"texture tex1\" \"t\" \"color tex2\" [.5 .5 .5]\nMaterial \"matte\" \"texture Kd\" \"s\"\n",
-         "Texture \"t\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [.1 .1 .1] \"rgb tex2\" [.4 .4 .4] \"float uscale\" 4\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\n"},
+         "Texture \"t\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [.2 .2 .2] \"rgb tex2\" [.8 .8 .8] \"float uscale\" 4\n"
+         "Texture \"s\" \"spectrum\" \"scale\" \"texture tex\" \"t\" \"float scale\" .5\nMaterial \"diffuse\" \"texture reflectance\" \"s\"\n"},
     };
     for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; ++i) {
         char old[2048], now[2048];
