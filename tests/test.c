@@ -114,3 +114,21 @@ int main(int argc, char **argv)
     qsort(tests, test_count, sizeof tests[0], by_name);
     return _cmocka_run_group_tests("steradian", tests, test_count, NULL, NULL);
 }
+
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define IS_SANITIZED 1
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define IS_SANITIZED 1
+#endif
+
+bool is_slow_build(void)
+{
+#ifdef IS_SANITIZED
+    return true;
+#else
+    return false;
+#endif
+}

@@ -51,6 +51,8 @@ void test_equal_text(const char *file, int line, const char *what, const char *v
 void test_mean(const char *file, int line, const char *what, const struct sr_tally *tally, double expected);
 void test_chi2(const char *file, int line, const double *observed, const double *expected, size_t cells);
 
+/* Whether a sanitizer slows everything down: then tests look for faults of memory, and statistics make do with less. */
+bool is_slow_build(void);
 /* A file of the optional reference folder; skips the test with a message where it is absent. Static buffer. */
 const char *test_reference_file(const char *name);
 /* A fresh temporary folder for this test program. */

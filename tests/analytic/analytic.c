@@ -4,24 +4,6 @@
 
 #include <stdarg.h>
 
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define IS_SANITIZED 1
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define IS_SANITIZED 1
-#endif
-
-bool is_slow_build(void)
-{
-#ifdef IS_SANITIZED
-    return true;
-#else
-    return false;
-#endif
-}
-
 double effort(void)
 {
     const char *text = getenv("STERADIAN_TEST_EFFORT");

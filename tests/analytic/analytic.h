@@ -35,7 +35,6 @@ void run_rows(const char *title, const struct row *rows);
 /* One verdict; goal is the relative standard error that must be reached. */
 void check(const struct row *row, const char *how, struct estimate e, double goal);
 uint32_t samples(double n); // the number wanted, by effort and sanitizer
-bool is_slow_build(void);
 double effort(void);
 double z_of(struct estimate e, double value); // of Student's t, as a normal deviate of the same probability
 

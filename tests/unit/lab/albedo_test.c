@@ -177,7 +177,7 @@ static void compare(bool in_double)
 {
     int disagree = 0;
     for (size_t i = 0; i < sizeof reflection / sizeof *reflection; ++i)
-        for (int k = 0; k < 4; ++k) {
+        for (int k = is_slow_build() ? 3 : 0; k < 4; ++k) {
             const struct row *r = &reflection[i];
             disagree += !agrees(&(struct single){r->words, theta[k], r->lambda, r->digits, r->E[k]}, r->phi, in_double);
         }
