@@ -24,7 +24,7 @@ struct sr_image_codec {
 };
 
 extern const struct sr_image_codec sr_image_codec_exr, sr_image_codec_png, sr_image_codec_jpeg, sr_image_codec_tga,
-    sr_image_codec_pfm, sr_image_codec_hdr;
+    sr_image_codec_pfm, sr_image_codec_hdr, sr_image_codec_qoi;
 
 /* sr_image_create, but first refuses what the size of the file cannot back. */
 sr_status sr_image_create_for(const struct sr_image_source *source, uint64_t width, uint64_t height,

@@ -6,7 +6,8 @@
 #include <string.h>
 
 static const struct sr_image_codec *const codecs[] = {&sr_image_codec_exr, &sr_image_codec_png, &sr_image_codec_jpeg,
-                                                      &sr_image_codec_pfm, &sr_image_codec_hdr, &sr_image_codec_tga};
+                                                      &sr_image_codec_pfm, &sr_image_codec_hdr, &sr_image_codec_qoi,
+                                                      &sr_image_codec_tga};
 enum { CODECS = sizeof codecs / sizeof *codecs };
 
 static const size_t MAX_FILE_B = (size_t)16 << 30;
@@ -45,7 +46,7 @@ sr_status sr_image_decode(const char *label, const void *data, size_t size, enum
                        label, codec->name);
     if (!codec)
         return sr_fail(error, SR_ERROR_INPUT,
-                       "%s: is no image that can be read: EXR, PNG, JPEG, PFM, HDR or TGA was expected", label);
+                       "%s: is no image that can be read: EXR, PNG, JPEG, PFM, HDR, QOI or TGA was expected", label);
     return codec->decode(&source, image, error);
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Pixels with named channels and units: EXR, PFM, PNG, HDR, JPEG and TGA files, comparison, statistics, tone mapping.
+/* Pixels with named channels and units: EXR, PFM, PNG, HDR, JPEG, QOI and TGA files, comparison, statistics, tone mapping.
  *
  * The top row comes first; pixel (x, y) covers [x, x+1) × [y, y+1) of the image plane. An image owns everything
  * that it points to. Images do not change behind anyone's back: whoever reads one on several threads needs no
@@ -89,6 +89,7 @@ sr_status sr_image_to_float(struct sr_image *image, struct sr_error *error);
  *   JPEG  grey and RGB bytes (CMYK is refused).      TGA  8, 15, 16, 24, 32 bits, palettes, run lengths, any origin.
  *   PFM   floats, both byte orders.                   HDR  RGBE and XYZE (converted), all run lengths; rows, not
  *         columns. EXPOSURE is divided out, a PFM scale is multiplied in.
+ *   QOI   RGB and RGBA bytes.
  * An image is refused where it would need more than 256 MiB + 2000 times the size of its file: a hostile header costs
  * no memory, and of honest files only huge ones of a single colour get there. */
 sr_status sr_image_read(const char *path, struct sr_image **image, struct sr_error *error);

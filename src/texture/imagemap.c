@@ -6,10 +6,14 @@
  *
  *     level = levels - 1 + log2(width of the footprint),   width = 2 max(|dsdx|, |dsdy|, |dtdx|, |dtdy|)
  *
- * point and bilinear read the level rounded down, trilinear mixes it with the next (below level 1 it reads the
- * image itself), as pbrt does (Pharr, Jakob & Humphreys 2023, 10.4). "ewa" is not the elliptical weighted average of Heckbert 1989 itself: trilinear lookups as
- * wide as the ellipse's minor axis are spread along its major axis with the same Gaussian weights exp(-2 r^2), no more
- * of them than maxanisotropy; for a round footprint it equals trilinear.
+ * point and bilinear read the level rounded down, trilinear mixes it with the next (below level 1 it reads the image itself),
+ * as pbrt does (Pharr, Jakob & Humphreys 2023, 10.4). "ewa" is the elliptical weighted average: texels under the ellipse that
+ * a pixel's disk becomes, weighed by a Gaussian of the distance from its middle, on the two levels around the one where the
+ * minor axis is one texel long (Heckbert 1989; Greene & Heckbert 1986):
+ *
+ *     weight = exp(-2 r^2) - exp(-2),   r^2 = A x^2 + B x y + C y^2 < 1,   level = levels - 1 + log2(minor axis)
+ *
+ * Over an image that repeats, each filter keeps the mean of the texels.
  *
  * Spectrum textures interpolate the texels' curves (see pyramid.c); the wrap "octahedralsphere" is that of equal-area
  * environment maps, where leaving the square over an edge means to enter it over the same edge, mirrored in the middle. */
@@ -61,7 +65,7 @@ static int wrapped(int i, int n, int wrap, bool *outside)
     if (SR_LIKELY(i >= 0 && i < n))
         return i;
     if (wrap == WRAP_REPEAT)
-        return i < 0 ? i + n : i - n; // never farther off than one period: see find_taps
+        return i % n < 0 ? i % n + n : i % n;
     *outside = true;
     return i < 0 ? 0 : n - 1;
 }
@@ -69,40 +73,42 @@ static int wrapped(int i, int n, int wrap, bool *outside)
 // leaving over an edge is coming in over the same edge, at the place mirrored at the edge's middle
 static void wrap_octahedral(int *x, int *y, int w, int h)
 {
-    if (*x < 0 || *x >= w) {
+    while (*x < 0 || *x >= w) {
         *x = *x < 0 ? -1 - *x : 2 * w - 1 - *x;
         *y = h - 1 - *y;
     }
-    if (*y < 0 || *y >= h) {
+    while (*y < 0 || *y >= h) {
         *y = *y < 0 ? -1 - *y : 2 * h - 1 - *y;
         *x = w - 1 - *x;
     }
-    *x = *x < 0 ? 0 : *x >= w ? w - 1 : *x;
-    *y = *y < 0 ? 0 : *y >= h ? h - 1 : *y;
 }
 
-static void add_tap(struct taps *taps, const struct sr_pyramid_level *l, int wrap, int x, int y, float weight)
+// false: outside, where there is nothing
+static bool wrap(const struct sr_pyramid_level *l, int how, int x, int y, size_t *index)
 {
-    if (weight == 0)
-        return;
     int w = (int)l->width, h = (int)l->height;
     bool outside = false;
-    if (wrap == WRAP_OCTAHEDRAL) {
+    if (how == WRAP_OCTAHEDRAL) {
         wrap_octahedral(&x, &y, w, h);
     } else {
-        x = wrapped(x, w, wrap, &outside);
-        y = wrapped(y, h, wrap, &outside);
-        if (outside && wrap == WRAP_BLACK)
-            return;
+        x = wrapped(x, w, how, &outside);
+        y = wrapped(y, h, how, &outside);
     }
-    taps->index[taps->count] = (size_t)y * l->width + (size_t)x;
+    *index = (size_t)y * l->width + (size_t)x;
+    return !outside || how != WRAP_BLACK;
+}
+
+static void add_tap(struct taps *taps, const struct sr_pyramid_level *l, int how, int x, int y, float weight)
+{
+    if (weight == 0 || !wrap(l, how, x, y, &taps->index[taps->count]))
+        return;
     taps->weight[taps->count++] = weight;
 }
 
-static struct taps find_taps(const struct sr_pyramid_level *l, int wrap, bool point, sr_vec2 st)
+static struct taps find_taps(const struct sr_pyramid_level *l, int how, bool point, sr_vec2 st)
 {
     // into one period, or to where nothing new comes any more: then texel numbers are small (and NaN becomes a number)
-    if (wrap == WRAP_REPEAT) {
+    if (how == WRAP_REPEAT) {
         st.x -= floorf(st.x);
         st.y -= floorf(st.y);
         st.x = st.x >= 0 && st.x < 1 ? st.x : 0; // x - floor(x) may round to 1
@@ -114,7 +120,7 @@ static struct taps find_taps(const struct sr_pyramid_level *l, int wrap, bool po
     struct taps taps = {.count = 0};
     float x = st.x * (float)l->width, y = st.y * (float)l->height;
     if (point) {
-        add_tap(&taps, l, wrap, (int)floorf(x), (int)floorf(y), 1);
+        add_tap(&taps, l, how, (int)floorf(x), (int)floorf(y), 1);
         return taps;
     }
     x -= 0.5f;
@@ -122,10 +128,10 @@ static struct taps find_taps(const struct sr_pyramid_level *l, int wrap, bool po
     float fx = floorf(x), fy = floorf(y);
     int x0 = (int)fx, y0 = (int)fy;
     float dx = x - fx, dy = y - fy;
-    add_tap(&taps, l, wrap, x0, y0, (1 - dx) * (1 - dy));
-    add_tap(&taps, l, wrap, x0 + 1, y0, dx * (1 - dy));
-    add_tap(&taps, l, wrap, x0, y0 + 1, (1 - dx) * dy);
-    add_tap(&taps, l, wrap, x0 + 1, y0 + 1, dx * dy);
+    add_tap(&taps, l, how, x0, y0, (1 - dx) * (1 - dy));
+    add_tap(&taps, l, how, x0 + 1, y0, dx * (1 - dy));
+    add_tap(&taps, l, how, x0, y0 + 1, (1 - dx) * dy);
+    add_tap(&taps, l, how, x0 + 1, y0 + 1, dx * dy);
     return taps;
 }
 
@@ -171,32 +177,106 @@ static sr_spectrum read_width(const struct lookup *q, sr_vec2 st, float width)
     return (1 - share) * read_level(q, below, st) + share * read_level(q, below + 1, st);
 }
 
+// texels under an ellipse, added up in groups
+struct gathered {
+    const struct lookup *q;
+    const struct sr_pyramid_level *level;
+    sr_spectrum sum;
+    float weights;
+    int count;
+    float weight[64];
+    const struct sr_packed_texel *texel[64];
+};
+
+static void add_group(struct gathered *g)
+{
+    bool has_scale = g->q->map->rgb_use != SR_PARAM_ALBEDO;
+    if (g->count)
+        g->sum += sr_packed_texels_sum(g->texel, g->weight, g->count, has_scale, *g->q->lambda);
+    g->count = 0;
+}
+
+static void gather(struct gathered *g, int x, int y, float weight)
+{
+    size_t index;
+    g->weights += weight;
+    if (!wrap(g->level, g->q->map->wrap, x, y, &index))
+        return;
+    if (!g->q->lambda) {
+        g->sum += weight * g->level->values[index];
+        return;
+    }
+    g->weight[g->count] = weight;
+    g->texel[g->count++] = &g->level->spectra[index];
+    if (g->count == (int)(sizeof g->weight / sizeof *g->weight))
+        add_group(g);
+}
+
+static sr_spectrum read_ellipse_level(const struct lookup *q, uint32_t level, sr_vec2 st, sr_vec2 major, sr_vec2 minor)
+{
+    const struct sr_pyramid_level *l = &q->map->pyramid.levels[level];
+    float w = (float)l->width, h = (float)l->height, x = st.x * w - 0.5f, y = st.y * h - 0.5f;
+    sr_vec2 a = {major.x * w, major.y * h}, b = {minor.x * w, minor.y * h};
+    // a disk of one texel added, or a thin ellipse would fall between texels
+    float A = a.y * a.y + b.y * b.y + 1, B = -2 * (a.x * a.y + b.x * b.y), C = a.x * a.x + b.x * b.x + 1;
+    float inverse = 1 / (A * C - B * B / 4);
+    float reach = sqrtf(A); // of the ellipse along y
+    A *= inverse;
+    B *= inverse;
+    C *= inverse;
+    struct gathered g = {.q = q, .level = l};
+    for (int j = (int)ceilf(y - reach); j <= (int)floorf(y + reach); ++j) {
+        // where the row enters and leaves: A dx^2 + B dx dy + C dy^2 = 1
+        float dy = (float)j - y, middle = -B * dy / (2 * A),
+              half = sr_safe_sqrt(middle * middle - (C * dy * dy - 1) / A);
+        for (int i = (int)ceilf(x + middle - half); i <= (int)floorf(x + middle + half); ++i) {
+            float dx = (float)i - x, r2 = A * dx * dx + B * dx * dy + C * dy * dy;
+            if (r2 < 1)
+                gather(&g, i, j, expf(-2 * r2) - 0.13533528f);
+        }
+    }
+    add_group(&g);
+    return g.weights > 0 ? g.sum / g.weights : read_level(q, level, st);
+}
+
 static sr_spectrum read_ellipse(const struct lookup *q, const struct sr_mapped *f, sr_vec2 st)
 {
     sr_vec2 major = {f->dsdx, -f->dtdx}, minor = {f->dsdy, -f->dtdy}; // t is flipped
-    float length2 = major.x * major.x + major.y * major.y, other2 = minor.x * minor.x + minor.y * minor.y;
-    if (length2 < other2) {
+    float length = sqrtf(major.x * major.x + major.y * major.y), other = sqrtf(minor.x * minor.x + minor.y * minor.y);
+    if (length < other) {
+        sr_vec2 swap = major;
         major = minor;
-        float swap = length2;
-        length2 = other2;
-        other2 = swap;
+        minor = swap;
+        float longer = other;
+        other = length;
+        length = longer;
     }
-    float length = sqrtf(length2), width = sr_max(sqrtf(other2), length / q->map->max_anisotropy);
-    if (!(width > 0))
-        return read_level(q, 0, st);
-    int taps = (int)ceilf(sr_min(length / width, 64) - 1e-4f);
-    if (taps <= 1)
-        return read_width(q, st, 2 * width);
-    float reach = 1 - width / length; // taps are as wide as the minor axis: their centres stay inside by that much
-    sr_spectrum sum = SR_BLACK;
-    float weights = 0;
-    for (int i = 0; i < taps; ++i) {
-        float r = reach * (2 * ((float)i + 0.5f) / (float)taps - 1);
-        float weight = expf(-2 * r * r);
-        sum += weight * read_width(q, (sr_vec2){st.x + r * major.x, st.y + r * major.y}, 2 * width);
-        weights += weight;
+    float least = length / sr_min(q->map->max_anisotropy, 64);
+    if (other < least) { // blurs along the minor axis, or the work would have no end
+        minor = other > 0 ? (sr_vec2){minor.x * least / other, minor.y * least / other}
+                          : (sr_vec2){-major.y * least / length, major.x * least / length};
+        other = least;
     }
-    return sum / weights;
+    if (!(other > 0) || !(length < 1e6f))
+        return length > 0 ? read_level(q, q->map->pyramid.count - 1, (sr_vec2){0.5f, 0.5f}) : read_level(q, 0, st);
+    uint32_t last = q->map->pyramid.count - 1;
+    float level = sr_max(log2f(other) + (float)last, 0);
+    if (level >= (float)last)
+        return read_level(q, last, (sr_vec2){0.5f, 0.5f});
+    // into the first period, where floats are fine
+    if (q->map->wrap == WRAP_REPEAT) {
+        st.x -= floorf(st.x);
+        st.y -= floorf(st.y);
+    } else {
+        st.x = sr_clamp(st.x, -64, 64);
+        st.y = sr_clamp(st.y, -64, 64);
+    }
+    if (!(fabsf(st.x) <= 64 && fabsf(st.y) <= 64)) // not a number
+        st = (sr_vec2){0, 0};
+    uint32_t below = (uint32_t)level;
+    float share = level - (float)below;
+    sr_spectrum fine = read_ellipse_level(q, below, st, major, minor);
+    return share > 0 ? (1 - share) * fine + share * read_ellipse_level(q, below + 1, st, major, minor) : fine;
 }
 
 static sr_spectrum look_up(const struct lookup *q, const struct sr_point *x)

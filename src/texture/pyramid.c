@@ -108,6 +108,7 @@ struct source {
     const struct sr_texels *texels; // or NULL
     const float *floats;
     bool is_float;
+    bool has_alpha; // a float texture's number is alpha: there is one, and it is not 1 everywhere
 };
 
 // a float texture's number in *r, or linear RGB
@@ -129,7 +130,7 @@ static struct sr_rgb fetch(const struct source *s, uint32_t x, uint32_t y)
         return (struct sr_rgb){v[0], v[0], v[0]};
     if (!s->is_float)
         return (struct sr_rgb){v[0], v[1], v[2]};
-    float number = s->channels == 4 ? v[3] : (v[0] + v[1] + v[2]) * (1 / 3.0f);
+    float number = s->has_alpha ? v[3] : (v[0] + v[1] + v[2]) * (1 / 3.0f);
     return (struct sr_rgb){number, number, number};
 }
 
@@ -239,6 +240,15 @@ static void halve_row(void *context, uint64_t y)
     }
 }
 
+static bool has_alpha(const struct sr_texels *t)
+{
+    size_t n = t->channels == 4 ? (size_t)t->width * t->height : 0;
+    for (size_t i = 0; i < n; ++i)
+        if (t->floats ? t->floats[4 * i + 3] != 1 : t->bytes[4 * i + 3] != 255)
+            return true;
+    return false;
+}
+
 // small images are done before a thread has begun
 static int threads_for(uint32_t width, uint32_t height)
 {
@@ -258,7 +268,8 @@ sr_status sr_pyramid_build(struct sr_pyramid *p, const struct sr_texels *texels,
 
     p->count = 0;
     use.space = texels->space;
-    struct source source = {texels->width, texels->height, texels->channels, texels, NULL, is_float};
+    struct source source = {
+        texels->width, texels->height, texels->channels, texels, NULL, is_float, is_float && has_alpha(texels)};
     float *previous = NULL;
     sr_status status = SR_OK;
     for (;;) {
@@ -288,7 +299,7 @@ sr_status sr_pyramid_build(struct sr_pyramid *p, const struct sr_texels *texels,
         sr_parallel_for(threads_for(width, height), height, halve_row, &work);
         sr_free(previous);
         previous = work.halved;
-        source = (struct source){width, height, channels, NULL, previous, is_float};
+        source = (struct source){width, height, channels, NULL, previous, is_float, false};
     }
     sr_free(previous);
     return status;

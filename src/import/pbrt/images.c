@@ -9,7 +9,7 @@
 
 struct sr_pbrt_image {
     const char *path;
-    bool is_linear; // read so: matters for whole numbers of 16 bits
+    float gamma; // read so: matters for whole numbers of 16 bits
     struct sr_image *image;
     int channels[4], channel_count; // which of the image's channels are used
     enum sr_colour_space_id space;
@@ -79,12 +79,21 @@ static sr_status make_dense(struct sr_pbrt_build *b, struct sr_pbrt_image *i)
 struct job {
     const char *path;
     const struct sr_pbrt_memory_file *memory; // or NULL: on disk
-    bool is_linear;
+    float gamma;
     struct sr_location where;
     struct sr_image *image;
     struct sr_error error;
     uint64_t hash;
 };
+
+/* 16-bit numbers, read as linear, to the power of gamma; alpha stays. */
+static void bend(struct sr_image *image, float gamma)
+{
+    size_t n = (size_t)image->width * image->height, channels = image->channel_count;
+    for (size_t c = 0; c < channels; ++c)
+        for (size_t i = 0; i < n && strcmp(image->channels[c].name, "A") != 0; ++i)
+            image->floats[i * channels + c] = powf(image->floats[i * channels + c], gamma);
+}
 
 static void read_image(void *context, uint64_t k)
 {
@@ -95,7 +104,9 @@ static void read_image(void *context, uint64_t k)
         return;
     const void *data = j->memory ? j->memory->data : file;
     j->hash = sr_pbrt_hash(0, data, size);
-    sr_image_decode(j->path, data, size, j->is_linear ? SR_IMAGE_LINEAR : SR_IMAGE_SRGB, &j->image, &j->error);
+    sr_image_decode(j->path, data, size, j->gamma > 0 ? SR_IMAGE_LINEAR : SR_IMAGE_SRGB, &j->image, &j->error);
+    if (j->image && j->image->floats && j->gamma > 0 && j->gamma != 1 && size > 4 && memcmp(data, "\x89PNG", 4) == 0)
+        bend(j->image, j->gamma);
     sr_free(file);
 }
 
@@ -109,17 +120,16 @@ static sr_status keep(struct sr_pbrt_build *b, struct job *j)
         return sr_pbrt_no_memory(b);
     }
     b->hash = sr_pbrt_hash(b->hash, &j->hash, sizeof j->hash);
-    *i = (struct sr_pbrt_image){
-        .path = j->path, .is_linear = j->is_linear, .image = j->image, .space = find_space(j->image)};
+    *i = (struct sr_pbrt_image){.path = j->path, .gamma = j->gamma, .image = j->image, .space = find_space(j->image)};
     choose_channels(i);
     return make_dense(b, i);
 }
 
-static struct sr_pbrt_image *find(struct sr_pbrt_build *b, const char *path, bool is_linear)
+static struct sr_pbrt_image *find(struct sr_pbrt_build *b, const char *path, float gamma)
 {
     for (size_t k = 0; k < b->images.count; ++k) {
         struct sr_pbrt_image *i = SR_PBRT_AT(b->images, struct sr_pbrt_image, k);
-        if (strcmp(i->path, path) == 0 && (i->is_linear == is_linear || i->image->bytes))
+        if (strcmp(i->path, path) == 0 && (i->gamma == gamma || i->image->bytes))
             return i;
     }
     return NULL;
@@ -133,13 +143,13 @@ sr_status sr_pbrt_images_read_ahead(struct sr_pbrt_build *b)
     if (!jobs)
         return sr_pbrt_no_memory(b);
     for (size_t k = 0; k < b->late_textures.count; ++k) {
-        bool is_known = find(b, late[k].path, late[k].gamma == 1) != NULL;
+        bool is_known = find(b, late[k].path, late[k].gamma) != NULL;
         for (size_t i = 0; i < count && !is_known; ++i)
-            is_known = strcmp(jobs[i].path, late[k].path) == 0 && jobs[i].is_linear == (late[k].gamma == 1);
+            is_known = strcmp(jobs[i].path, late[k].path) == 0 && jobs[i].gamma == late[k].gamma;
         if (!is_known)
             jobs[count++] = (struct job){.path = late[k].path,
                                          .memory = sr_pbrt_memory_file(b->d, late[k].path),
-                                         .is_linear = late[k].gamma == 1,
+                                         .gamma = late[k].gamma,
                                          .where = late[k].where};
     }
     sr_parallel_for(b->threads, count, read_image, jobs);
@@ -165,17 +175,14 @@ static sr_status make_decode(struct sr_pbrt_build *b, float gamma, const float *
 sr_status sr_pbrt_texels(struct sr_pbrt_build *b, const char *path, struct sr_location where, float gamma,
                          bool for_good, struct sr_texels *out)
 {
-    struct sr_pbrt_image *i = find(b, path, gamma == 1);
+    struct sr_pbrt_image *i = find(b, path, gamma);
     if (!i) {
-        struct job j = {.path = path,
-                        .memory = sr_pbrt_memory_file(b->d, path),
-                        .is_linear = gamma == 1,
-                        .where = where};
+        struct job j = {.path = path, .memory = sr_pbrt_memory_file(b->d, path), .gamma = gamma, .where = where};
         read_image(&j, 0);
         sr_status status = keep(b, &j);
         if (status != SR_OK)
             return status;
-        i = find(b, path, gamma == 1);
+        i = find(b, path, gamma);
     }
     *out = (struct sr_texels){.width = i->image->width,
                               .height = i->image->height,

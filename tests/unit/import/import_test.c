@@ -79,10 +79,14 @@ TEST(what_is_not_supported_says_so_and_what_is)
                  "2:1: there is no medium named \"fog\"");
     expect_error("Film \"rgb\"\n\"string sensor\" \"nikon_d850\" WorldBegin",
                  "2:1: sensor \"nikon_d850\" is not supported yet; supported: cie1931");
-    expect_error(
-        "WorldBegin Texture \"t\" \"spectrum\" \"marble\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\" " BALL,
-        "1:12: Texture \"marble\" is not supported yet; supported: constant, scale, mix, bilerp, checkerboard, "
-        "imagemap");
+    expect_error("WorldBegin Texture \"t\" \"spectrum\" \"marzipan\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\" " BALL,
+                 "1:12: Texture \"marzipan\" is not supported yet; supported: constant, scale, mix, bilerp, checkerboard, "
+                 "imagemap, dots, directionmix, marble");
+    expect_error("WorldBegin Texture \"t\" \"float\" \"marble\"\nShape \"sphere\" \"texture alpha\" \"t\"",
+                 "1:12: Texture \"marble\" is not supported yet; supported: constant, scale, mix, bilerp, checkerboard, "
+                 "imagemap, dots, directionmix, fbm, wrinkled, windy");
+    expect_error("WorldBegin Texture \"t\" \"spectrum\" \"ptex\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\" " BALL,
+                 "1:12: Texture \"t\": Ptex files are not read: bake it into an image over the surface's (u, v) and use \"imagemap\"");
 }
 
 TEST(wrong_parameters_tell_where_and_what_was_expected)
