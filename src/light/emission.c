@@ -60,15 +60,20 @@ float sr_light_choice_weight(const struct sr_spd *s)
     return (float)(sr_spd_luminous_integral(s) + 1e-3 * SR_CIE_Y_INTEGRAL * (double)sr_spd_max(s));
 }
 
-sr_status sr_light_check_texels(const struct sr_texels *t, const char *filename, struct sr_error *error)
+sr_status sr_light_check_finite(const struct sr_texels *t, const char *filename, struct sr_error *error)
 {
-    if (t->channels < 3)
-        return sr_fail(error, SR_ERROR_INPUT, "%s: the image of a light needs the channels R, G and B", filename);
     size_t n = (size_t)t->width * t->height * t->channels;
     for (size_t i = 0; t->floats && i < n; ++i)
         if (!isfinite(t->floats[i]))
             return sr_fail(error, SR_ERROR_INPUT, "%s: texel %zu of a light's image is infinite or not a number", filename, i / t->channels);
     return SR_OK;
+}
+
+sr_status sr_light_check_texels(const struct sr_texels *t, const char *filename, struct sr_error *error)
+{
+    if (t->channels < 3)
+        return sr_fail(error, SR_ERROR_INPUT, "%s: the image of a light needs the channels R, G and B", filename);
+    return sr_light_check_finite(t, filename, error);
 }
 
 double sr_light_mean_luminance(const struct sr_texels *t)

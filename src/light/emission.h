@@ -20,7 +20,9 @@ sr_status sr_light_set_brightness(struct sr_spd *s, enum sr_colour_space_id spac
  * hardly sees is found, too. */
 float sr_light_choice_weight(const struct sr_spd *s);
 
-/* All texels are numbers and there are three channels. */
+/* All texels are numbers. */
+sr_status sr_light_check_finite(const struct sr_texels *t, const char *filename, struct sr_error *error);
+/* The same, and there are three channels. */
 sr_status sr_light_check_texels(const struct sr_texels *t, const char *filename, struct sr_error *error);
 /* Mean luminance of the texels where white is 1 [1]. */
 double sr_light_mean_luminance(const struct sr_texels *t);

@@ -149,8 +149,7 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     if (m->L.kind != SR_SPD_NONE)
         return sr_fail(error, SR_ERROR_INPUT, "an infinite light takes \"L\" or \"filename\" (%s), not both", m->filename);
     if (t->width != t->height)
-        return sr_fail(error, SR_ERROR_INPUT, "%s: an environment image must be square, an equal-area octahedral map, but is %u x %u; "
-                       "convert latitude-longitude maps first", m->filename, t->width, t->height);
+        return sr_fail(error, SR_ERROR_INPUT, "%s: an environment image must be square, an equal-area octahedral map, or a latitude-longitude map of 2 x 1, but is %u x %u", m->filename, t->width, t->height);
     if (sr_light_check_texels(t, m->filename, error))
         return error->status;
     double factor = (double)m->scale / sr_colour_space(t->space)->illuminant_luminous_integral;
@@ -324,7 +323,7 @@ static bool bounds(const void *self, struct sr_light_bounds *b)
 }
 
 const struct sr_light_model sr_light_infinite = {
-    .name = "infinite", .params = params, .size = sizeof(struct infinite), .is_infinite = true, .prepare = prepare,
+    .name = "infinite", .params = params, .size = sizeof(struct infinite), .is_infinite = true, .wants_octahedral_map = true, .prepare = prepare,
     .place = place, .sample = sample, .pdf = pdf, .Le = Le, .Le_pdf = Le_pdf, .bounds = bounds, .emit = emit,
     .emit_pdf = emit_pdf, .emit_weight = emit_weight, .power = power,
 };

@@ -57,6 +57,7 @@ struct sr_light_model {
     const struct sr_param *params;
     size_t size;
     bool is_infinite, is_delta;
+    bool wants_octahedral_map; // of its image: latitude-longitude ones are to be made so first
     bool reads_own_file; // its row of kind SR_PARAM_FILE names no image; prepare reads it
     /* Normalises (power, illuminance, scale), checks. For shapes' lights the shape is already in self. */
     sr_status (*prepare)(void *self, struct sr_arena *arena, struct sr_error *error);
@@ -135,6 +136,11 @@ size_t sr_light_transform_offset(const struct sr_light_model *model);
 size_t sr_light_texels_offset(const struct sr_light_model *model);
 size_t sr_light_space_offset(const struct sr_light_model *model);
 size_t sr_light_absolute_offset(const struct sr_light_model *model);
+
+/* Latitude-longitude maps, twice as wide as high (u = phi / (2 pi), v = theta / pi from +z), made square octahedral ones of the same
+ * resolution and the same mean luminance, for lights that want those. Texels are R, G and B afterwards. */
+bool sr_light_is_latitude_longitude(const struct sr_texels *t);
+sr_status sr_light_make_square(struct sr_texels *t, struct sr_arena *arena, struct sr_error *error);
 
 static inline bool sr_light_draw(struct sr_light light, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
 {

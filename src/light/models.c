@@ -4,10 +4,10 @@
 
 #include <string.h>
 
-extern const struct sr_light_model sr_light_point, sr_light_spot, sr_light_ies, sr_light_distant, sr_light_infinite;
+extern const struct sr_light_model sr_light_point, sr_light_spot, sr_light_ies, sr_light_goniometric, sr_light_projection, sr_light_distant, sr_light_infinite;
 
 const struct sr_light_model *const sr_light_models[] = {
-    &sr_light_point, &sr_light_spot, &sr_light_ies, &sr_light_distant, &sr_light_infinite, NULL,
+    &sr_light_point, &sr_light_spot, &sr_light_ies, &sr_light_goniometric, &sr_light_projection, &sr_light_distant, &sr_light_infinite, NULL,
 };
 
 const struct sr_light_model *sr_light_model_find(const char *name)

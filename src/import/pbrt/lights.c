@@ -57,6 +57,20 @@ static sr_status read_image(struct sr_pbrt_build *b, const struct sr_pbrt_entity
     return path ? sr_pbrt_texels(b, path, where, 0, true, texels) : sr_pbrt_no_memory(b);
 }
 
+/* Images in another layout than the light's own. */
+static sr_status make_square(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, struct sr_texels *texels)
+{
+    struct sr_error inner = {0};
+    if (!sr_light_is_latitude_longitude(texels))
+        return SR_OK;
+    uint32_t width = texels->width, height = texels->height;
+    if (sr_light_make_square(texels, b->arena, &inner) != SR_OK)
+        return sr_pbrt_wrap(b, e, &inner);
+    sr_log(b->log, SR_INFO, "%s:%d: the image of the light is %u x %u, taken as a latitude-longitude map (first row: +z) and converted to an "
+           "equal-area octahedral one of %u x %u", e->where.file, e->where.line, width, height, texels->width, texels->height);
+    return SR_OK;
+}
+
 static sr_status add_light(struct sr_pbrt_build *b, const struct sr_pbrt_light *light)
 {
     const struct sr_pbrt_entity *e = &light->entity;
@@ -85,6 +99,8 @@ static sr_status add_light(struct sr_pbrt_build *b, const struct sr_pbrt_light *
         *(bool *)(self + at) = b->result->units == SR_UNITS_SI;
     if (status == SR_OK && (at = sr_light_texels_offset(m)) != SIZE_MAX)
         status = read_image(b, e, (struct sr_texels *)(self + at));
+    if (status == SR_OK && m->wants_octahedral_map)
+        status = make_square(b, e, (struct sr_texels *)(self + at));
     if (status != SR_OK)
         return status;
     struct sr_error inner = {0};

@@ -70,8 +70,8 @@ TEST(what_is_not_supported_says_so_and_what_is)
         "2:1: Material \"velvet\" is not supported yet; supported: diffuse, diffusetransmission, conductor, "
         "dielectric, thindielectric, coateddiffuse, coatedconductor, mix, interface, hair, subsurface, and the models of "
         "'steradian brdf list'");
-    expect_error("WorldBegin\nLightSource \"projection\"",
-                 "2:1: LightSource \"projection\" is not supported yet; supported: point, spot, ies, distant, infinite");
+    expect_error("WorldBegin\nLightSource \"lantern\"",
+                 "2:1: LightSource \"lantern\" is not supported yet; supported: point, spot, ies, goniometric, projection, distant, infinite");
     expect_error("Camera \"realistic\"\nWorldBegin",
                  "1:1: Camera \"realistic\" is not supported yet; supported: perspective, orthographic, spherical, fisheye");
     expect_error("Film \"gbuffer\"\nWorldBegin", "1:1: Film \"gbuffer\" is not supported yet; supported: rgb");

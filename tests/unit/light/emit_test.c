@@ -149,6 +149,44 @@ TEST(flux_of_an_environment_image_is_its_mean)
     check((struct case_of){.name = "infinite, image", .light = light, .flux = (double)light.model->power(light.self), .flux_error = 5e-3});
 }
 
+TEST(flux_of_a_light_that_throws_an_image_is_that_of_its_texels)
+{
+    enum { SIDE = 12 };
+    static float texels[SIDE * SIDE * 3];
+    for (int i = 0; i < SIDE * SIDE * 3; ++i)
+        texels[i] = i / 3 == 70 ? 10 : (float)(i / 3 % 5) * .2f; // a beam, and texels that are dark
+    static const char *const names[] = {"goniometric", "projection"};
+    for (int k = 0; k < 4; ++k) {
+        const struct sr_light_model *m = sr_light_model_find(names[k / 2]);
+        void *self = scenery_new(m);
+        struct sr_light_common *common = self;
+        common->texels = (struct sr_texels){.width = SIDE, .height = SIDE, .channels = 3, .floats = texels, .space = SR_SRGB};
+        common->light_to_world = sr_transform_rotate(k == 2 ? 0 : 50, (sr_vec3){1, 1, 0});
+        struct sr_transform stretch = sr_transform_scale((sr_vec3){1, 2, -1});
+        if (k % 2)
+            common->light_to_world = sr_transform_multiply(&common->light_to_world, &stretch);
+        scenery_set(m, self, "filename", &(const char *){"image.exr"}, sizeof(char *));
+        struct sr_light light = scenery_finish(m, self);
+        double flux = (double)light.model->power(light.self);
+        if (k % 2) { // squeezed directions: by quadrature over the sphere
+            flux = 0;
+            enum { N = 200 };
+            for (int i = 0; i < N * N; ++i) {
+                sr_vec3 d = sr_equal_area_square_to_sphere((sr_vec2){((float)(i % N) + .5f) / N, ((float)(i / N) + .5f) / N});
+                struct sr_point x = {.p = sr_add(d, sr_transform_point(&common->light_to_world, (sr_vec3){0, 0, 0}))};
+                struct sr_light_sample s;
+                for (int g = 0; g < SCENERY_GROUPS; ++g) {
+                    struct sr_wavelengths w = scenery_wavelengths(g);
+                    if (sr_light_draw(light, &x, (sr_vec2){.5f, .5f}, &w, &s))
+                        flux += 4 * acos(-1) / (N * N) * scenery_luminous(s.L, &w);
+                }
+            }
+        }
+        check((struct case_of){.name = names[k / 2], .light = light, .flux = flux, .flux_error = k % 2 ? 1e-2 : 5e-3,
+                               .is_delta_direction = k == 3}); // its corners touch cells between the points of the grid
+    }
+}
+
 TEST(lights_begin_paths_by_their_power)
 {
     struct sr_error error = {0};
