@@ -14,7 +14,7 @@ if(BUILD_SHARED_LIBS)
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_include_directories(steradian_shared INTERFACE $<INSTALL_INTERFACE:include>)
   target_link_libraries(steradian_shared PRIVATE $<BUILD_INTERFACE:steradian_flags> Threads::Threads PNG::PNG JPEG::JPEG
-    ZLIB::ZLIB EXPAT::EXPAT PkgConfig::OPENEXR PkgConfig::CAIRO PkgConfig::CMINPACK ${EMBREE_LIBRARY} m)
+    ZLIB::ZLIB EXPAT::EXPAT PkgConfig::OPENEXR PkgConfig::CAIRO PkgConfig::CMINPACK PkgConfig::JANSSON ${EMBREE_LIBRARY} m)
   set(STERADIAN_INSTALLED steradian_shared)
 endif()
 

@@ -2,7 +2,11 @@
 /* The list of formats. */
 #include "import/describe.h"
 
+#include "import/gltf/gltf.h"
+
 static const struct sr_import_format formats[] = {
+    {".gltf", sr_gltf_read},
+    {".glb", sr_gltf_read},
     {NULL, NULL},
 };
 

@@ -27,6 +27,8 @@ struct sr_import_options {
     uint32_t shifted;        // number from 1 of the declared uncertainty whose parameter is shifted; 0: none
     double shift;            // by so many standard uncertainties
     const char *integrator;  // NULL, or the estimator to use instead of the file's
+    const char *camera;      // of glTF files: its name or number from 1; NULL: the first
+    const char *variant;     // of glTF files: the name or number from 1 of a variant of materials; NULL: none
 };
 
 /* A standard uncertainty that the file declares of one of its numbers: "#@ Uncertainty" (docs/guide/budget.md). */

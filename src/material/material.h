@@ -21,6 +21,8 @@ struct sr_material {
     const void *self;
     struct sr_texture displacement;        // bump [m], or none: the scene file's "displacement", of any material
     struct sr_texels normal_map;           // width 0: none; "normalmap": numbers, bytes count as byte / 255
+    const struct sr_texture *normal;       // NULL: none; three float textures, "normalx", "normaly", "normalz": along
+                                           // tangent, dp/dv's side, and ns; instead of the map [1]
 };
 
 /* A BSDF model needs no file here: its material follows from its table. Those that have one give the words of pbrt, or more

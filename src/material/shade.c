@@ -13,7 +13,10 @@
  * bytes are read as byte / 255 whatever their decode table says. If a material has both maps the normal map is used, as
  * in pbrt.
  *
- * In both ns' stays on the side of the geometric normal n. */
+ * Normal textures: three numbers are the normal, each from a texture of its own; its second axis is on the side of dp/dv,
+ * so that mirrored texture coordinates need no other map (glTF 2.0, 3.9.3).
+ *
+ * In all ns' stays on the side of the geometric normal n. */
 #include "material/private.h"
 
 #include <string.h>
@@ -46,9 +49,16 @@ static sr_vec3 normal_at(const struct sr_texels *t, sr_vec2 uv)
     return (sr_vec3){n[0], n[1], n[2]};
 }
 
-static void turn_normal(const struct sr_texels *map, struct sr_point *x)
+static sr_vec3 normal_of(const struct sr_texture normal[3], const struct sr_point *x)
 {
-    sr_vec3 local = normal_at(map, x->uv);
+    sr_vec3 n = {sr_texture_float(normal[0], x), sr_texture_float(normal[1], x), sr_texture_float(normal[2], x)};
+    if (sr_dot(sr_cross(x->dpdu, x->dpdv), x->n) < 0)
+        n.y = -n.y;
+    return n;
+}
+
+static void turn_normal(sr_vec3 local, struct sr_point *x)
+{
     if (!(sr_length2(local) > 0))
         return;
     struct sr_frame frame = sr_frame_from_zx(x->ns, x->dpdus);
@@ -109,7 +119,7 @@ bool sr_material_has_footprint(const struct sr_material *material)
 {
     if (!material || !material->model)
         return false;
-    if (material->displacement.model || material->model->choose)
+    if (material->displacement.model || material->normal || material->model->choose)
         return true;
     for (const struct sr_param *p = material->model->params; p && p->name; ++p) {
         struct sr_texture t = {NULL, NULL};
@@ -127,7 +137,7 @@ bool sr_material_is_plain(const struct sr_material *material)
 {
     if (!material || !material->model)
         return true;
-    if (!material->model->is_isotropic || material->normal_map.width > 0 || sr_material_has_footprint(material))
+    if (!material->model->is_isotropic || material->normal_map.width > 0 || material->normal || sr_material_has_footprint(material))
         return false;
     for (const struct sr_param *p = material->model->params; p && p->name; ++p) {
         struct sr_texture t = {NULL, NULL};
@@ -181,7 +191,9 @@ void sr_material_shade(const struct sr_material *material, struct sr_point *x, s
         out->model = NULL;
     } else {
         if (SR_UNLIKELY(material->normal_map.width > 0))
-            turn_normal(&material->normal_map, x);
+            turn_normal(normal_at(&material->normal_map, x->uv), x);
+        else if (SR_UNLIKELY(material->normal != NULL))
+            turn_normal(normal_of(material->normal, x), x);
         else if (SR_UNLIKELY(material->displacement.model != NULL))
             bump(material->displacement, x);
         material->model->bsdf(material->self, &c, out);

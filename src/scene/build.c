@@ -93,7 +93,7 @@ static void filter_occluded(const struct RTCFilterFunctionNArguments *a)
 
 bool scene_alpha_accepts(const struct placed_shape *s, uint32_t primitive, sr_vec2 hit, sr_vec3 o, sr_vec3 d)
 {
-    struct sr_point x = {.uv = s->shape.model->uv(s->shape.self, primitive, hit)};
+    struct sr_point x = {.uv = s->shape.model->uv(s->shape.self, primitive, hit), .face = (int32_t)primitive};
     float alpha = sr_texture_float(s->alpha, &x);
     if (alpha >= 1)
         return true;

@@ -27,6 +27,12 @@ const struct sr_texture_model *const sr_texture_models[] = {
     &sr_texture_wrinkled,
     &sr_texture_windy,
     &sr_texture_marble,
+    &sr_texture_texelmap_float,
+    &sr_texture_texelmap_spectrum,
+    &sr_texture_attribute_float,
+    &sr_texture_attribute_spectrum,
+    &sr_texture_product,
+    &sr_texture_threshold,
     NULL,
 };
 

@@ -8,12 +8,16 @@
 struct common {
     struct sr_texture displacement;
     const char *normal_map;
+    struct sr_texture normal[3];
 };
 static const struct sr_param common_params[] = {
     {SR_PARAM_FLOAT_TEXTURE, "displacement", "m", -INFINITY, INFINITY, NAN, offsetof(struct common, displacement),
      "bump"},
     {SR_PARAM_FILE, "normalmap", "1", 0, 0, NAN, offsetof(struct common, normal_map),
      "directions in red, green and blue"},
+    {SR_PARAM_FLOAT_TEXTURE, "normalx", "1", -INFINITY, INFINITY, NAN, offsetof(struct common, normal[0]), "of the normal, along dp/du"},
+    {SR_PARAM_FLOAT_TEXTURE, "normaly", "1", -INFINITY, INFINITY, NAN, offsetof(struct common, normal[1]), "of the normal, on the side of dp/dv"},
+    {SR_PARAM_FLOAT_TEXTURE, "normalz", "1", -INFINITY, INFINITY, NAN, offsetof(struct common, normal[2]), "of the normal, along the smooth one"},
     {.name = NULL},
 };
 const struct sr_param *const sr_pbrt_material_params = common_params;
@@ -45,7 +49,7 @@ static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, s
     }
     struct sr_material *material = sr_arena_alloc(b->arena, sizeof *material);
     void *self = sr_arena_alloc(b->arena, m->size);
-    struct common common = {{NULL, NULL}, NULL};
+    struct common common = {0};
     if (!material || !self)
         return sr_pbrt_no_memory(b);
     sr_status status = sr_pbrt_bind(b, m->params, e, (struct sr_pbrt_use){SR_PARAM_ALBEDO, false}, self);
@@ -58,6 +62,12 @@ static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, s
         status =
             sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT,
                          "%s \"%s\": the normal map is grey: expected red, green and blue", e->directive, e->model);
+    bool has_normal = common.normal[0].model || common.normal[1].model || common.normal[2].model;
+    if (status == SR_OK && has_normal && !(common.normal[0].model && common.normal[1].model && common.normal[2].model))
+        status = sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "%s \"%s\": expected \"normalx\", \"normaly\" and \"normalz\" together",
+                              e->directive, e->model);
+    if (status == SR_OK && has_normal && !(material->normal = sr_arena_copy(b->arena, common.normal, sizeof common.normal)))
+        status = sr_pbrt_no_memory(b);
     if (status != SR_OK)
         return status;
     struct sr_error inner = {0};
