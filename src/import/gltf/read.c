@@ -39,7 +39,7 @@ static void build(struct sr_gltf *g, const char *bytes, size_t size)
         sr_gltf_place_camera(g, &key);
     if (sr_gltf_is_well(g) && g->light_count == 0)
         sr_gltf_place_sky(g, key);
-    sr_compose_setting(&g->c, "Integrator", "path");
+    sr_compose_setting(&g->c, "Integrator", g->c.d->media.count ? "volpath" : "path");
 }
 
 sr_status sr_gltf_read_bytes(const char *label, const char *bytes, size_t size, const struct sr_import_options *options,
