@@ -131,6 +131,7 @@ static void draw_replicate(void *context, uint64_t r)
         if (d.weight == 0)
             continue;
         struct sr_path_start start = {.ray = {.o = d.o, .d = d.d, .t_max = INFINITY}};
+        start.medium = sr_scene_medium_at(job->scene, &start.ray);
         sr_spectrum L = job->integrator.model->L(job->integrator.self, job->scene, &start, &sampler, &w, NULL, &worker);
         sum += d.weight * (double)sr_spectrum_to_xyz(L, &w).y;
     }

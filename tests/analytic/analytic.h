@@ -28,7 +28,7 @@ struct row {
     double a, b; // what the measurement wants to know of the case: an angle, a reflectance
 };
 
-extern const struct row source_rows[], exchange_rows[], enclosure_rows[], fresnel_rows[], photometry_rows[], camera_rows[]; // end with id NULL
+extern const struct row source_rows[], exchange_rows[], enclosure_rows[], fresnel_rows[], photometry_rows[], camera_rows[], media_rows[]; // end with id NULL
 
 /* Measures all rows, prints them, fails if one does. */
 void run_rows(const char *title, const struct row *rows);
