@@ -296,6 +296,8 @@ static sr_spectrum bdpt_L(const void *self, const struct sr_scene *scene, const 
 
     walk.mode = SR_IMPORTANCE;
     walk.start = target && target->middle ? target->middle : start;
+    walk.has_time = true; // a path is joined at one time
+    walk.time = start->ray.time;
     walk.sampler = light_sampler;
     walk.first_group = SR_USE_LIGHT_PATH + 2;
     walk.met = NULL;

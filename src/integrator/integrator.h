@@ -15,8 +15,8 @@
  * by each vertex that carries the flux beta; connect gives w and the weight (a sensor's: struct sr_sensor_view). */
 struct sr_target {
     const void *self;
-    bool (*connect)(const void *self, sr_vec3 p, sr_vec2 u, struct sr_sensor_view *view);
-    float (*density)(const void *self, sr_vec3 d, float distance); // of a sensor's rays, for weighing; NULL: a meter
+    bool (*connect)(const void *self, sr_vec3 p, float time, sr_vec2 u, struct sr_sensor_view *view);
+    float (*density)(const void *self, sr_vec3 d, float distance, float time); // of a sensor's rays, for weighing; NULL: a meter
     float pixels;                       // [pixel^2] of the raster that they are spread over
     const struct sr_path_start *middle; // NULL, or a sensor ray, for footprints
     struct sr_sampler sampler;          // of the path from the lights that is wanted now

@@ -18,6 +18,13 @@ static sr_spectrum no_number(const void *self, const struct sr_scene *scene, con
     return SR_BLACK + NAN;
 }
 
+static const char *blind(const void *self, const struct sr_scene *scene)
+{
+    (void)self;
+    return sr_scene_moves(scene) ? "what moves stands as when the shutter opens: cubature does not integrate over time" : NULL;
+}
+
 const struct sr_integrator_model sr_integrator_quadrature = {
+    .blind = blind,
     .name = "quadrature", .text = "meters at a point by adaptive cubature, without chance", .params = params, .size = sizeof(struct sr_quadrature), .L = no_number,
 };

@@ -58,7 +58,7 @@ static float sensor_density(const struct sr_walk *walk, const struct sr_vertex *
     if (!target || !target->density)
         return 1;
     float distance = sr_length(sr_sub(v->x.p, walk->start->ray.o));
-    return target->density(target->self, walk->start->ray.d, distance) * sr_vertex_cos(v, walk->start->ray.d) / target->pixels;
+    return target->density(target->self, walk->start->ray.d, distance, walk->start->ray.time) * sr_vertex_cos(v, walk->start->ray.d) / target->pixels;
 }
 
 int sr_walk_vertices(const struct sr_walk *walk, struct sr_ray ray, sr_spectrum beta, float pdf_direction, struct sr_vertex *v)
@@ -155,7 +155,7 @@ struct sr_light_path sr_light_vertices(const struct sr_walk *walk, struct sr_ver
         return none;
     struct sr_light light = lights->lights[r.light];
     v[0].x = r.from;
-    v[0].x.time = walk->start ? walk->start->ray.time : u_place[2];
+    v[0].x.time = walk->has_time ? walk->time : u_place[2];
     v[0].is_outside = light.model->is_infinite;
     v[0].is_delta = false;
     v[0].pdf_back = 0;
@@ -170,7 +170,7 @@ struct sr_light_path sr_light_vertices(const struct sr_walk *walk, struct sr_ver
 
 bool sr_vertex_seen(const struct sr_vertex *v, const struct sr_target *target, sr_vec2 u, struct sr_sensor_view *view, sr_spectrum *gain)
 {
-    if (!v->is_connectible || !target->connect(target->self, v->x.p, u, view))
+    if (!v->is_connectible || !target->connect(target->self, v->x.p, v->x.time, u, view))
         return false;
     *gain = v->beta * sr_vertex_leaving(v, view->wi) * view->weight;
     return sr_spectrum_any(*gain != 0.0f);

@@ -38,6 +38,8 @@ typedef void sr_met_light(void *user, int count, const struct sr_hit *hit, sr_ve
 struct sr_walk {
     const struct sr_scene *scene;
     enum sr_transport mode;            // SR_RADIANCE: from a sensor
+    bool has_time; // of paths from lights; else it is drawn
+    float time;    // [1] share of the shutter interval
     const struct sr_path_start *start; // sensor paths: the sensor's ray; light paths: a sensor's, or NULL
     const struct sr_sampler *sampler;
     uint32_t first_group; // of the random numbers of vertex 1

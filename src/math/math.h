@@ -218,6 +218,20 @@ sr_vec3 sr_box_centre(struct sr_box b);
 sr_vec3 sr_box_diagonal(struct sr_box b);
 void sr_box_bounding_sphere(struct sr_box b, sr_vec3 *centre, float *radius);
 
+/* ---- motion: a transform that changes while the shutter is open ---- */
+
+struct sr_motion {
+    struct sr_transform start, end;
+    float begin, finish; // [1] shares of the shutter interval: before and after them it stands
+    bool moves;          // start is not end
+    double T[3], T_change[3], S[3][3], S_change[3][3], R[3][3], R_sine[3][3], R_versine[3][3], angle; // motion.c
+};
+/* false: there is no way between them, as one of them mirrors, or is no affine map. finish <= begin: it jumps. */
+bool sr_motion_make(const struct sr_transform *start, const struct sr_transform *end, float begin, float finish, struct sr_motion *out);
+void sr_motion_at(const struct sr_motion *m, float time, struct sr_transform *out); // time: share of the shutter interval
+/* Holds all that moves in a box from time0 to time1. */
+struct sr_box sr_motion_box(const struct sr_motion *m, struct sr_box box, float time0, float time1);
+
 /* ---- a point of a surface, as geometry ---- */
 
 struct sr_point {

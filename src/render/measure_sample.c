@@ -37,9 +37,9 @@ struct receiving {
     sr_spectrum sum;
 };
 
-static bool connect(const void *self, sr_vec3 p, sr_vec2 u, struct sr_sensor_view *view)
+static bool connect(const void *self, sr_vec3 p, float time, sr_vec2 u, struct sr_sensor_view *view)
 {
-    (void)u;
+    (void)u, (void)time;
     const struct receiving *r = self;
     sr_vec3 to = sr_sub(r->at->x.p, p);
     float r2 = sr_length2(to), distance = sqrtf(r2);

@@ -69,6 +69,86 @@ static void user_occluded(const struct RTCOccludedFunctionNArguments *a)
         r->tfar = -INFINITY;
 }
 
+/* ---- instances that move: their place is asked for anew by each ray, so that what it meets is exactly where it is then ---- */
+
+enum { MOVING_STEPS = 65 };
+
+struct sr_transform instance_transform(const struct instance *instance, float time)
+{
+    struct sr_transform outer = instance->object_to_world, inner;
+    if (instance->outer)
+        sr_motion_at(instance->outer, time, &outer);
+    if (!instance->inner)
+        return outer;
+    sr_motion_at(instance->inner, time, &inner);
+    return sr_transform_is_identity(&outer) ? inner : sr_transform_multiply(&outer, &inner);
+}
+
+static void moving_bounds(const struct RTCBoundsFunctionArguments *a)
+{
+    const struct instance *instance = a->geometryUserPtr;
+    struct sr_box b = instance->boxes[a->timeStep];
+    *a->bounds_o = (struct RTCBounds){.lower_x = b.lo.x, .lower_y = b.lo.y, .lower_z = b.lo.z,
+                                      .upper_x = b.hi.x, .upper_y = b.hi.y, .upper_z = b.hi.z};
+}
+
+/* Embree has boxes go evenly from one step to the next: each holds what its two neighbouring intervals do. */
+static void set_boxes(struct instance *instance)
+{
+    struct RTCBounds e;
+    rtcGetSceneBounds(instance->object->embree, &e);
+    struct sr_box own = {{e.lower_x, e.lower_y, e.lower_z}, {e.upper_x, e.upper_y, e.upper_z}};
+    for (int i = 0; i < MOVING_STEPS; ++i) {
+        float t0 = (float)(i > 0 ? i - 1 : 0) / (MOVING_STEPS - 1), t1 = (float)(i + 1 < MOVING_STEPS ? i + 1 : i) / (MOVING_STEPS - 1);
+        struct sr_box b = instance->inner ? sr_motion_box(instance->inner, own, t0, t1) : own;
+        instance->boxes[i] = sr_box_is_empty(own) ? own : instance->outer ? sr_motion_box(instance->outer, b, t0, t1) : sr_box_transform(&instance->object_to_world, b);
+    }
+}
+
+struct saved_ray {
+    sr_vec3 o, d;
+};
+
+static struct saved_ray enter(const struct instance *instance, struct RTCRay *r, struct RTCIntersectContext *context, uint32_t number)
+{
+    struct saved_ray saved = {{r->org_x, r->org_y, r->org_z}, {r->dir_x, r->dir_y, r->dir_z}};
+    struct sr_transform t = instance_transform(instance, r->time);
+    sr_vec3 o = sr_inverse_point(&t, saved.o), d = sr_inverse_vector(&t, saved.d);
+    r->org_x = o.x, r->org_y = o.y, r->org_z = o.z;
+    r->dir_x = d.x, r->dir_y = d.y, r->dir_z = d.z;
+    context->instID[0] = number;
+    return saved;
+}
+
+static void leave(struct RTCRay *r, struct RTCIntersectContext *context, struct saved_ray saved)
+{
+    r->org_x = saved.o.x, r->org_y = saved.o.y, r->org_z = saved.o.z;
+    r->dir_x = saved.d.x, r->dir_y = saved.d.y, r->dir_z = saved.d.z;
+    context->instID[0] = RTC_INVALID_GEOMETRY_ID;
+}
+
+static void moving_intersect(const struct RTCIntersectFunctionNArguments *a)
+{
+    if (!a->valid[0])
+        return;
+    const struct instance *instance = a->geometryUserPtr;
+    struct RTCRayHit *rh = (struct RTCRayHit *)a->rayhit;
+    struct saved_ray saved = enter(instance, &rh->ray, a->context, a->geomID);
+    rtcIntersect1(instance->object->embree, a->context, rh);
+    leave(&rh->ray, a->context, saved);
+}
+
+static void moving_occluded(const struct RTCOccludedFunctionNArguments *a)
+{
+    if (!a->valid[0])
+        return;
+    const struct instance *instance = a->geometryUserPtr;
+    struct RTCRay *r = (struct RTCRay *)a->ray;
+    struct saved_ray saved = enter(instance, r, a->context, a->geomID);
+    rtcOccluded1(instance->object->embree, a->context, r);
+    leave(r, a->context, saved);
+}
+
 static void filter_intersect(const struct RTCFilterFunctionNArguments *a)
 {
     if (a->valid[0] != -1)
@@ -158,6 +238,35 @@ static void build_object(struct sr_scene *scene, struct object *object)
     }
 }
 
+static RTCGeometry make_moving(struct sr_scene *scene, struct instance *instance)
+{
+    instance->boxes = sr_arena_alloc(&scene->arena, MOVING_STEPS * sizeof *instance->boxes);
+    if (!instance->boxes)
+        return NULL;
+    set_boxes(instance);
+    scene->moves |= (instance->outer && instance->outer->moves) || (instance->inner && instance->inner->moves);
+    RTCGeometry g = rtcNewGeometry(scene->device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(g, 1);
+    rtcSetGeometryTimeStepCount(g, MOVING_STEPS);
+    rtcSetGeometryBoundsFunction(g, moving_bounds, NULL);
+    rtcSetGeometryIntersectFunction(g, moving_intersect);
+    rtcSetGeometryOccludedFunction(g, moving_occluded);
+    rtcSetGeometryUserData(g, instance);
+    return g;
+}
+
+static RTCGeometry make_standing(struct sr_scene *scene, const struct instance *instance)
+{
+    RTCGeometry g = rtcNewGeometry(scene->device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(g, instance->object->embree);
+    float m[12]; // rows first, three of them
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column)
+            m[4 * row + column] = instance->object_to_world.m[row][column];
+    rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, m);
+    return g;
+}
+
 static void add_instances(struct sr_scene *scene, struct object *world)
 {
     const struct instance_def *defs = scene->instance_defs.data;
@@ -171,14 +280,12 @@ static void add_instances(struct sr_scene *scene, struct object *world)
     scene->first_instance = world->shape_count;
     for (size_t i = 0; i < n; ++i) {
         struct object *object = ((struct object **)scene->objects.data)[defs[i].object.index1];
-        instances[i] = (struct instance){defs[i].object_to_world, object};
-        RTCGeometry g = rtcNewGeometry(scene->device, RTC_GEOMETRY_TYPE_INSTANCE);
-        rtcSetGeometryInstancedScene(g, object->embree);
-        float m[12]; // rows first, three of them
-        for (int row = 0; row < 3; ++row)
-            for (int column = 0; column < 4; ++column)
-                m[4 * row + column] = defs[i].object_to_world.m[row][column];
-        rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, m);
+        instances[i] = (struct instance){.object_to_world = defs[i].object_to_world, .object = object, .outer = defs[i].outer, .inner = defs[i].inner};
+        RTCGeometry g = instances[i].outer || instances[i].inner ? make_moving(scene, &instances[i]) : make_standing(scene, &instances[i]);
+        if (!g) {
+            sr_fail(&scene->error, SR_ERROR_RESOURCE, "not enough memory for %zu instances", n);
+            return;
+        }
         rtcCommitGeometry(g);
         attach(world->embree, g, scene->first_instance + (uint32_t)i);
     }

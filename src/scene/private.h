@@ -32,18 +32,23 @@ struct object {
 };
 
 struct instance {
-    struct sr_transform object_to_world;
+    struct sr_transform object_to_world; // where it stands
     const struct object *object;
+    const struct sr_motion *outer, *inner; // NULL, NULL: it stands; else outer after inner, either may be NULL
+    struct sr_box *boxes; // of a moving one, at its time steps
 };
+/* Of a moving instance. */
+struct sr_transform instance_transform(const struct instance *instance, float time);
 
 struct sr_scene {
     struct sr_arena arena;
     struct sr_error error;
-    bool is_finished, has_footprints, has_media, has_subsurface, has_interfaces;
+    bool is_finished, has_footprints, has_media, has_subsurface, has_interfaces, moves;
     struct sr_medium sensor_medium;
     const struct sr_medium *around; // beyond all surfaces; NULL: vacuum
     struct sr_array objects;        // struct object *
     struct sr_array instance_defs;  // struct instance_def
+    struct sr_array mover_defs;     // struct mover_def
     struct sr_array light_defs;     // struct sr_light
     struct sr_array material_list;  // const struct sr_material *, in the order of first use
     const struct object *world;
@@ -59,6 +64,13 @@ struct sr_scene {
 struct instance_def {
     struct sr_transform object_to_world;
     sr_object_id object;
+    const struct sr_motion *outer, *inner; // as of struct instance
+};
+
+/* A shape that moves is an object of its own, in its parent's instances or in the world. */
+struct mover_def {
+    sr_object_id parent, object;
+    const struct sr_motion *motion;
 };
 
 void scene_find_media(struct sr_scene *scene); // once rays can be cast

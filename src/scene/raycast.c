@@ -33,6 +33,19 @@ static void to_world(struct sr_point *x, const struct sr_transform *t)
     x->dndv = sr_transform_normal(t, x->dndv);
 }
 
+/* The same of a moving one. Its place is known to float's rounding, in both directions: on the way back to where the surface
+ * is, a ray must not be on its other side. */
+static void to_world_at(struct sr_point *x, const struct instance *instance)
+{
+    struct sr_transform t = instance_transform(instance, x->time);
+    to_world(x, &t);
+    float back[3], gamma = sr_gamma(5), *error = &x->p_error.x;
+    for (int i = 0; i < 3; ++i)
+        back[i] = gamma * (fabsf(t.inverse[i][0] * x->p.x) + fabsf(t.inverse[i][1] * x->p.y) + fabsf(t.inverse[i][2] * x->p.z) + fabsf(t.inverse[i][3]));
+    for (int i = 0; i < 3; ++i)
+        error[i] += fabsf(t.m[i][0]) * back[0] + fabsf(t.m[i][1]) * back[1] + fabsf(t.m[i][2]) * back[2];
+}
+
 static inline bool raycast(const struct sr_scene *scene, const struct sr_ray *ray, bool bare, struct sr_hit *hit)
 {
     struct RTCRayHit rh;
@@ -55,8 +68,12 @@ static inline bool raycast(const struct sr_scene *scene, const struct sr_ray *ra
         s->shape.model->point(s->shape.self, rh.hit.primID, (sr_vec2){rh.hit.u, rh.hit.v}, &hit->point);
     }
     hit->point.time = ray->time;
-    if (SR_UNLIKELY(instance))
-        to_world(&hit->point, &instance->object_to_world);
+    if (SR_UNLIKELY(instance)) {
+        if (instance->boxes)
+            to_world_at(&hit->point, instance);
+        else
+            to_world(&hit->point, &instance->object_to_world);
+    }
     hit->t = rh.ray.tfar;
     hit->material = s->material;
     hit->media = s->media;

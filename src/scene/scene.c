@@ -33,6 +33,7 @@ void sr_scene_destroy(struct sr_scene *scene)
         rtcReleaseDevice(scene->device);
     sr_array_free(&scene->objects);
     sr_array_free(&scene->instance_defs);
+    sr_array_free(&scene->mover_defs);
     sr_array_free(&scene->light_defs);
     sr_array_free(&scene->material_list);
     sr_arena_free(&scene->arena);
@@ -63,7 +64,18 @@ void sr_scene_add_shape(struct sr_scene *scene, const struct sr_shape_def *def)
 {
     if (scene->error.status != SR_OK)
         return;
-    struct object *object = ((struct object **)scene->objects.data)[def->object.index1];
+    sr_object_id id = def->object;
+    if (def->motion) {
+        id = sr_scene_add_object(scene);
+        struct mover_def *mover = sr_array_push(&scene->mover_defs, sizeof *mover);
+        if (mover)
+            *mover = (struct mover_def){def->object, id, def->motion};
+        else
+            no_memory(scene);
+        if (scene->error.status != SR_OK)
+            return;
+    }
+    struct object *object = ((struct object **)scene->objects.data)[id.index1];
     struct sr_shape_def *copy = sr_array_push(&object->defs, sizeof *copy);
     if (!copy) {
         no_memory(scene);
@@ -72,15 +84,46 @@ void sr_scene_add_shape(struct sr_scene *scene, const struct sr_shape_def *def)
     *copy = *def;
 }
 
-void sr_scene_add_instance(struct sr_scene *scene, sr_object_id object, const struct sr_transform *object_to_world)
+static void add_instance(struct sr_scene *scene, struct instance_def def)
 {
     if (scene->error.status != SR_OK)
         return;
-    struct instance_def *def = sr_array_push(&scene->instance_defs, sizeof *def);
-    if (!def)
+    struct instance_def *copy = sr_array_push(&scene->instance_defs, sizeof *copy);
+    if (!copy)
         no_memory(scene);
     else
-        *def = (struct instance_def){*object_to_world, object};
+        *copy = def;
+}
+
+void sr_scene_add_instance(struct sr_scene *scene, sr_object_id object, const struct sr_transform *object_to_world)
+{
+    add_instance(scene, (struct instance_def){.object_to_world = *object_to_world, .object = object});
+}
+
+void sr_scene_add_moving_instance(struct sr_scene *scene, sr_object_id object, const struct sr_motion *motion)
+{
+    add_instance(scene, (struct instance_def){.object_to_world = motion->start, .object = object, .outer = motion});
+}
+
+/* Shapes that move: one instance in the world, or one for each instance of the object that they belong to. */
+static void add_movers(struct sr_scene *scene)
+{
+    const struct mover_def *movers = scene->mover_defs.data;
+    size_t stated = scene->instance_defs.count;
+    for (size_t i = 0; i < scene->mover_defs.count; ++i) {
+        const struct mover_def *m = &movers[i];
+        if (!m->parent.index1)
+            add_instance(scene, (struct instance_def){.object_to_world = sr_transform_identity(), .object = m->object, .inner = m->motion});
+        for (size_t k = 0; m->parent.index1 && k < stated; ++k) {
+            struct instance_def def = ((struct instance_def *)scene->instance_defs.data)[k];
+            if (def.object.index1 != m->parent.index1)
+                continue;
+            def.object = m->object;
+            def.inner = m->motion;
+            add_instance(scene, def);
+        }
+    }
+    sr_array_free(&scene->mover_defs);
 }
 
 void sr_scene_add_light(struct sr_scene *scene, struct sr_light light)
@@ -207,6 +250,7 @@ sr_status sr_scene_finish(struct sr_scene *scene, int threads, enum sr_light_cho
     if (scene->error.status != SR_OK || scene->is_finished)
         return scene->error.status;
     double start_s = sr_clock_s();
+    add_movers(scene);
     struct object **objects = scene->objects.data;
     for (size_t i = 0; i < scene->objects.count && scene->error.status == SR_OK; ++i)
         place_shapes(scene, objects[i], i == 0);
@@ -227,6 +271,11 @@ sr_status sr_scene_finish(struct sr_scene *scene, int threads, enum sr_light_cho
 bool sr_scene_has_footprints(const struct sr_scene *scene)
 {
     return scene->has_footprints;
+}
+
+bool sr_scene_moves(const struct sr_scene *scene)
+{
+    return scene->moves;
 }
 
 const struct sr_lights *sr_scene_lights(const struct sr_scene *scene)

@@ -29,6 +29,7 @@ struct sr_shape_def {
     const struct sr_light_emission *emission; // prepared; NULL: dark
     sr_object_id object;                // the object that it belongs to; none: the world
     const struct sr_media *media;       // NULL: the same medium on both sides
+    const struct sr_motion *motion;     // NULL: it stands; else into its object's space, or the world. It may not glow
 };
 
 struct sr_scene *sr_scene_create(void); // NULL: no memory
@@ -38,6 +39,7 @@ struct sr_error *sr_scene_error(struct sr_scene *scene); // where mistakes stick
 void sr_scene_add_shape(struct sr_scene *scene, const struct sr_shape_def *def);
 sr_object_id sr_scene_add_object(struct sr_scene *scene);
 void sr_scene_add_instance(struct sr_scene *scene, sr_object_id object, const struct sr_transform *object_to_world);
+void sr_scene_add_moving_instance(struct sr_scene *scene, sr_object_id object, const struct sr_motion *motion); // of object to world
 void sr_scene_add_light(struct sr_scene *scene, struct sr_light light);
 /* What is around the sensor; without model: vacuum, as it is if nobody says anything. */
 void sr_scene_set_sensor_medium(struct sr_scene *scene, struct sr_medium medium);
@@ -112,6 +114,7 @@ static inline const struct sr_medium *sr_hit_medium(const struct sr_hit *hit, sr
 bool sr_scene_has_footprints(const struct sr_scene *scene); // whether any material looks at them
 bool sr_scene_has_mirrors(const struct sr_scene *scene); // whether any material, seen straight on, is a mirror or clear glass
 bool sr_scene_has_subsurface(const struct sr_scene *scene); // whether light comes out of any material elsewhere
+bool sr_scene_moves(const struct sr_scene *scene); // whether anything does while the shutter is open
 struct sr_box sr_scene_bounds(const struct sr_scene *scene);
 
 struct sr_scene_counts {

@@ -66,14 +66,15 @@ static bool ray(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_time, 
     return true;
 }
 
-static float density(const void *self, sr_vec3 d, float distance)
+static float density(const void *self, sr_vec3 d, float distance, float time)
 {
+    (void)time;
     (void)distance;
     const struct orthographic *s = self;
     return 1 / fabsf(sr_dot(s->n, d));
 }
 
-static bool connect(const void *self, sr_vec3 p, sr_vec2 u_lens, struct sr_sensor_view *view)
+static bool connect(const void *self, sr_vec3 p, float time, sr_vec2 u_lens, struct sr_sensor_view *view)
 {
     const struct orthographic *s = self;
     sr_vec3 lens = {0, 0, 0}, d = s->d;
@@ -86,7 +87,7 @@ static bool connect(const void *self, sr_vec3 p, sr_vec2 u_lens, struct sr_senso
     if (!(t > 0) || !(length > 0))
         return false;
     sr_vec3 o = sr_mad(p, -t, d), on_screen = sr_sub(sr_sub(o, s->o0), lens), w = sr_scale(1 / length, d);
-    *view = (struct sr_sensor_view){.p = o, .wi = sr_neg(w), .distance = t * length, .weight = density(self, w, t * length),
+    *view = (struct sr_sensor_view){.p = o, .wi = sr_neg(w), .distance = t * length, .weight = density(self, w, t * length, time),
                                     .raster = {sr_dot(s->dual_x, on_screen), sr_dot(s->dual_y, on_screen)}};
     return view->weight < INFINITY;
 }

@@ -92,14 +92,15 @@ static bool ray(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_time, 
     return true;
 }
 
-static float density(const void *self, sr_vec3 d, float distance)
+static float density(const void *self, sr_vec3 d, float distance, float time)
 {
+    (void)time;
     const struct perspective *s = self;
     float c = sr_dot(s->n, d);
     return c * s->K > 0 ? s->K * s->K / (fabsf(c * c * c) * distance * distance) : 0;
 }
 
-static bool connect(const void *self, sr_vec3 p, sr_vec2 u_lens, struct sr_sensor_view *view)
+static bool connect(const void *self, sr_vec3 p, float time, sr_vec2 u_lens, struct sr_sensor_view *view)
 {
     const struct perspective *s = self;
     sr_vec3 lens = {0, 0, 0};
@@ -112,7 +113,7 @@ static bool connect(const void *self, sr_vec3 p, sr_vec2 u_lens, struct sr_senso
     if (!(t > 0) || !(distance > 0))
         return false;
     sr_vec3 on_screen = sr_sub(sr_mad(sr_scale(1 / t, to), s->inv_focal, lens), s->d0), w = sr_scale(1 / distance, to);
-    *view = (struct sr_sensor_view){.p = o, .wi = sr_neg(w), .distance = distance, .weight = density(self, w, distance),
+    *view = (struct sr_sensor_view){.p = o, .wi = sr_neg(w), .distance = distance, .weight = density(self, w, distance, time),
                                     .raster = {sr_dot(s->dual_x, on_screen), sr_dot(s->dual_y, on_screen)}};
     return view->weight > 0 && view->weight < INFINITY;
 }

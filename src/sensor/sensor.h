@@ -39,10 +39,10 @@ struct sr_sensor_model {
                          struct sr_arena *arena, struct sr_error *error);
     /* raster: position in pixels, (0,0) the upper left corner; u_lens, u_time uniform. false: no light comes */
     bool (*ray)(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_time, struct sr_sensor_ray *out);
-    /* The ray through a point of the lens that meets p; false: there is none. */
-    bool (*connect)(const void *self, sr_vec3 p, sr_vec2 u_lens, struct sr_sensor_view *view);
+    /* The ray through a point of the lens that meets p; false: there is none. NULL, and density NULL: nobody knows it. */
+    bool (*connect)(const void *self, sr_vec3 p, float time, sr_vec2 u_lens, struct sr_sensor_view *view);
     /* The same weight, of a ray's direction, at a distance along it [pixel^2/m^2]. */
-    float (*density)(const void *self, sr_vec3 d, float distance);
+    float (*density)(const void *self, sr_vec3 d, float distance, float time);
     /* The same where nobody looks at the changes, which are 0. NULL: ray serves. */
     bool (*bare_ray)(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_time, struct sr_sensor_ray *out);
 };
@@ -53,6 +53,9 @@ struct sr_sensor {
     const struct sr_sensor_model *model;
     const void *self;
 };
+
+/* A sensor that moves: `still` has been prepared in its own space, and motion leads from there to the world. */
+sr_status sr_sensor_move(struct sr_sensor still, const struct sr_motion *motion, struct sr_arena *arena, struct sr_sensor *out, struct sr_error *error);
 
 /* ---- fisheye projections: fisheye.c; rim: the angle from the axis at the rim of the disk [rad] ---- */
 

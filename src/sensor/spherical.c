@@ -80,8 +80,9 @@ static bool ray(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_time, 
     return true;
 }
 
-static float density(const void *self, sr_vec3 d, float distance)
+static float density(const void *self, sr_vec3 d, float distance, float time)
 {
+    (void)time;
     const struct spherical *s = self;
     sr_vec3 local = sr_inverse_vector(&s->common.camera_to_world, d);
     float length = sr_length(local), pixels = 1 / (s->inv_width * s->inv_height);
@@ -90,7 +91,7 @@ static float density(const void *self, sr_vec3 d, float distance)
     return per_sr * s->determinant / (length * length * length * distance * distance);
 }
 
-static bool connect(const void *self, sr_vec3 p, sr_vec2 u_lens, struct sr_sensor_view *view)
+static bool connect(const void *self, sr_vec3 p, float time, sr_vec2 u_lens, struct sr_sensor_view *view)
 {
     (void)u_lens;
     const struct spherical *s = self;
@@ -104,7 +105,7 @@ static bool connect(const void *self, sr_vec3 p, sr_vec2 u_lens, struct sr_senso
         square = sr_equal_area_sphere_to_square((sr_vec3){local.x, local.z, local.y});
     else
         square = (sr_vec2){sr_angle_of(local.z, local.x) * (0.5f * SR_INV_PI), acosf(sr_clamp(local.y, -1, 1)) * SR_INV_PI};
-    *view = (struct sr_sensor_view){.p = s->origin, .wi = sr_neg(w), .distance = distance, .weight = density(self, w, distance),
+    *view = (struct sr_sensor_view){.p = s->origin, .wi = sr_neg(w), .distance = distance, .weight = density(self, w, distance, time),
                                     .raster = {square.x / s->inv_width, square.y / s->inv_height}};
     return view->weight < INFINITY;
 }

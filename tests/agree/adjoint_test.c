@@ -118,6 +118,14 @@ static const struct {
     {"varnish", HEAD FILM ROOM LAMP "Material \"coateddiffuse\" \"rgb reflectance\" [.6 .3 .2] \"float roughness\" .3\n" BALL("-.3", "-.5", ".2", ".5"), 256, 64, 256},
     {"glow behind an interface", HEAD FILM ROOM LAMP "AttributeBegin Material \"interface\" AreaLightSource \"diffuse\" \"rgb L\" [1 2 3]\n" BALL("-.3", "-.3", ".2", ".3") "AttributeEnd\n",
      256, 64, 256},
+    {"things that move", HEAD FILM ROOM LAMP "AttributeBegin ActiveTransform EndTime Translate .8 .7 0 ActiveTransform All\n" BALL("-.5", "-.5", ".1", ".4") "AttributeEnd\n"
+     "ObjectBegin \"b\" Material \"diffuse\" \"rgb reflectance\" [.2 .5 .8]\n" BALL("0", "0", "0", ".3") "ObjectEnd\n"
+     "AttributeBegin Translate .5 -.4 .2 ActiveTransform EndTime Rotate 90 0 0 1 Translate .1 .3 0 Scale 1 2 1 ActiveTransform All ObjectInstance \"b\" AttributeEnd\n", 512, 128, 512},
+    {"a camera that moves", "LookAt 0 0 -3.4  0 0 0  0 1 0 ActiveTransform EndTime Rotate 25 .2 1 .3 Translate .4 .3 .5 Scale .8 1.4 1.1 ActiveTransform All\n"
+     "Camera \"perspective\" \"float fov\" 40 \"float lensradius\" .1 \"float focaldistance\" 3\n" FILM ROOM LAMP
+     "ActiveTransform EndTime Translate .5 .5 0 ActiveTransform All\n" BALL("-.3", "-.5", ".2", ".5"), 512, 128, 512},
+    {"a camera that moves and sees all around", "LookAt 0 0 -.5  0 0 0  0 1 0 ActiveTransform EndTime Rotate 60 .2 1 .3 Translate .2 .3 .1 Scale .8 1.4 1.1 ActiveTransform All\n"
+     "Camera \"spherical\" \"string mapping\" \"equirectangular\"\n" FILM ROOM LAMP BALL("-.3", "-.5", ".4", ".4"), 256, 64, 256},
 };
 
 TEST(paths_from_both_ends_bring_the_same_light)

@@ -57,6 +57,23 @@ TEST(bytes_of_splats_do_not_depend_on_threads_or_tiles)
     expect_one_hash("bdpt", 4);
 }
 
+TEST(bytes_of_what_moves_do_not_depend_on_threads_or_tiles)
+{
+    struct sr_import_options options = {.width = 70, .height = 50, .spp = 8};
+    struct sr_import_result scene;
+    struct sr_error error = {0};
+    if (!import_scene(scene_file("moving.pbrt", "LookAt 0 0 -3.4  0 0 0  0 1 0 ActiveTransform EndTime Rotate 9 1 2 3 ActiveTransform All Camera \"perspective\"\n"
+                                                "Film \"rgb\" \"string filename\" \"a.exr\" WorldBegin LightSource \"infinite\"\n"
+                                                "ActiveTransform EndTime Rotate 50 2 -1 1 Translate .3 .2 .1 ActiveTransform All\n"
+                                                "Translate .1 0 0 Scale .5 .6 .7 Shape \"sphere\" Shape \"cylinder\" \"float radius\" 1.2\n"),
+                      &options, &scene, &error))
+        test_fail(__FILE__, __LINE__, "%s", error.text);
+    struct sr_render_job job = job_of(&scene);
+    uint64_t one = hash_of(job, 1, 16);
+    EXPECT(hash_of(job, 2, 8) == one && hash_of(job, 3, 64) == one && hash_of(job, 7, 5) == one);
+    sr_import_result_free(&scene);
+}
+
 TEST(one_sample_alone_is_what_the_render_added)
 {
     struct sr_import_result scene;

@@ -34,6 +34,7 @@ struct sr_pbrt_named_shape {
     const char *name;
     struct sr_shape shape;
     bool is_of_object;
+    bool moves;
 };
 
 /* Textures of textures and mixes of mixes: rendering goes down as deep. */
@@ -50,6 +51,7 @@ struct sr_pbrt_build {
     struct sr_error *error;
     int threads;
     uint64_t hash;
+    float shutter_open, shutter_close; // [s]
     int depth; // of textures and materials being made
 
     struct sr_array named_shapes;             // struct sr_pbrt_named_shape, in the order of the file
@@ -130,6 +132,11 @@ sr_status sr_pbrt_settle_integrator(struct sr_pbrt_build *b);
 extern const struct sr_param sr_pbrt_option_params[];
 extern const struct sr_param *const sr_pbrt_film_params, *const sr_pbrt_sampler_params, *const sr_pbrt_shape_params,
     *const sr_pbrt_ply_params, *const sr_pbrt_material_params, *const sr_pbrt_uncertainty_params;
+
+/* motion.c: whether a transform differs at the shutter's ends; and the motion between them, or that of its inverses. */
+bool sr_pbrt_moves(const struct sr_pbrt_build *b, uint32_t transform);
+sr_status sr_pbrt_motion(struct sr_pbrt_build *b, uint32_t transform, bool is_inverted, const char *what, struct sr_location where,
+                         const struct sr_motion **out);
 
 static inline const struct sr_pbrt_transform *sr_pbrt_transform_of(const struct sr_pbrt_build *b, uint32_t index)
 {

@@ -251,6 +251,16 @@ static sr_status read_medium_interface(struct sr_pbrt_parser *p)
     return status;
 }
 
+static void warn_of_motion(struct sr_pbrt_parser *p)
+{
+    if (!p->has_warned_motion && memcmp(p->state.ctm.start.m, p->state.ctm.end.m, sizeof p->state.ctm.start.m) != 0) {
+        p->has_warned_motion = true;
+        sr_pbrt_warn(
+            p->d, p->where, "this %s moves while the shutter is open: lights, textures and media cannot, and stand as when it opens",
+            p->directive);
+    }
+}
+
 static sr_status read_texture(struct sr_pbrt_parser *p)
 {
     const char *name, *type;
@@ -274,21 +284,11 @@ static sr_status read_texture(struct sr_pbrt_parser *p)
     if (!texture || !sr_pbrt_names_add(names, name, (uint32_t)p->d->textures.count))
         return no_memory(p);
     texture->is_float = is_float;
+    warn_of_motion(p);
     status = sr_pbrt_read_entity(p, "the name of a kind of texture", p->state.attributes[SR_PBRT_OF_TEXTURE],
                                  &texture->entity);
     texture->entity.name = name;
     return status;
-}
-
-static void warn_of_motion(struct sr_pbrt_parser *p)
-{
-    if (!p->has_warned_motion && memcmp(p->state.ctm.start.m, p->state.ctm.end.m, sizeof p->state.ctm.start.m) != 0) {
-        p->has_warned_motion = true;
-        sr_pbrt_warn(
-            p->d, p->where,
-            "this %s moves while the shutter is open: motion blur is not supported yet, all stands as at the start",
-            p->directive);
-    }
 }
 
 static sr_status read_light(struct sr_pbrt_parser *p)
@@ -316,7 +316,6 @@ static sr_status read_shape(struct sr_pbrt_parser *p)
     struct sr_pbrt_shape *shape = sr_array_push(&p->d->shapes, sizeof *shape);
     if (!shape)
         return no_memory(p);
-    warn_of_motion(p);
     const struct sr_pbrt_state *s = &p->state;
     *shape = (struct sr_pbrt_shape){.material = s->material,
                                     .area_light1 = s->area_light1,
@@ -367,7 +366,6 @@ static sr_status read_object_instance(struct sr_pbrt_parser *p)
     if (p->object1)
         return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT,
                             "ObjectInstance \"%s\" inside of an object: expected outside", name);
-    warn_of_motion(p);
     uint32_t transform = sr_pbrt_store_transform(p);
     struct sr_pbrt_instance *instance =
         transform == UINT32_MAX ? NULL : sr_array_push(&p->d->instances, sizeof *instance);

@@ -67,6 +67,8 @@ static sr_status find_surface(struct sr_pbrt_build *b, const struct sr_pbrt_enti
         if (strcmp(named[i].name, name) == 0 && named[i].is_of_object)
             return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT, "Meter \"%s\": the shape \"%s\" belongs to an object, which has many places or none",
                                 e->model, name);
+        if (strcmp(named[i].name, name) == 0 && named[i].moves)
+            return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT, "Meter \"%s\": the shape \"%s\" moves: expected one that stands", e->model, name);
         if (strcmp(named[i].name, name) == 0)
             return make_surface(b, name, &common->surface);
         sr_pbrt_suggest(&s, named[i].name);

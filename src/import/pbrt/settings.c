@@ -171,11 +171,21 @@ static sr_status build_sensor(struct sr_pbrt_build *b)
     struct sr_transform camera_to_world = sr_transform_invert(&sr_pbrt_transform_of(b, e->transform)->start);
     struct sr_sensor_raster raster = {(uint32_t)b->result->film.width, (uint32_t)b->result->film.height};
     struct sr_error inner = {0};
+    const struct sr_motion *motion = NULL;
+    const struct sr_sensor_common *common = self;
+    b->shutter_open = sr_min(common->shutter_open, common->shutter_close);
+    b->shutter_close = sr_max(common->shutter_open, common->shutter_close);
+    if (sr_pbrt_moves(b, e->transform)) {
+        if (sr_pbrt_motion(b, e->transform, true, "Camera", e->where, &motion) != SR_OK)
+            return b->error->status;
+        camera_to_world = sr_transform_identity();
+    }
     if (m->prepare(self, raster, &camera_to_world, b->arena, &inner) != SR_OK)
         return sr_pbrt_wrap(b, e, &inner);
     b->result->sensor = (struct sr_sensor){m, self};
+    if (motion && sr_sensor_move(b->result->sensor, motion, b->arena, &b->result->sensor, &inner) != SR_OK)
+        return sr_pbrt_wrap(b, e, &inner);
     // what a sensor without colour curves of its own makes of the shutter: the picture times the seconds
-    const struct sr_sensor_common *common = self;
     b->result->film.exposure_time = common->shutter_close - common->shutter_open;
     if (!(b->result->film.exposure_time > 0)) {
         sr_pbrt_warn(b->d, e->where,

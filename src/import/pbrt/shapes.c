@@ -107,10 +107,18 @@ static float area_of(struct sr_shape shape)
     return (float)sum;
 }
 
+// lamps do not: they stand where they are when the shutter opens
+static bool moves(const struct sr_pbrt_build *b, const struct sr_pbrt_shape *s)
+{
+    return sr_pbrt_moves(b, s->entity.transform) && (!s->area_light1 || s->object1);
+}
+
 static sr_status prepare(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, const struct sr_shape_model *m,
                          void *self, struct sr_shape *out)
 {
-    struct sr_shape_placement placement = {sr_pbrt_transform_of(b, s->entity.transform)->start, s->reverse_orientation};
+    // what moves is made in its own space
+    struct sr_transform own = moves(b, s) ? sr_transform_identity() : sr_pbrt_transform_of(b, s->entity.transform)->start;
+    struct sr_shape_placement placement = {own, s->reverse_orientation};
     struct sr_error inner = {0};
     *out = (struct sr_shape){m->becomes ? m->becomes : m, self};
     return m->prepare(self, &placement, b->arena, &inner) == SR_OK ? SR_OK : sr_pbrt_wrap(b, &s->entity, &inner);
@@ -310,6 +318,10 @@ static sr_status add_shape(struct adder *a, const struct sr_pbrt_shape *s, struc
     float alpha;
     bool is_opaque = !common.alpha.model || (sr_texture_is_constant_float(common.alpha, &alpha) && alpha >= 1);
     def.alpha = is_opaque ? (struct sr_texture){NULL, NULL} : common.alpha;
+    if (moves(b, s) && sr_pbrt_motion(b, s->entity.transform, false, "Shape", s->entity.where, &def.motion) != SR_OK)
+        return b->error->status;
+    if (sr_pbrt_moves(b, s->entity.transform) && !def.motion)
+        sr_pbrt_warn(b->d, s->entity.where, "a shape that shines cannot move: it stands where it is when the shutter opens");
     for (int i = 0; i < count; ++i) {
         def.shape = shapes[i];
         sr_scene_add_shape(b->result->scene, &def);
@@ -318,7 +330,7 @@ static sr_status add_shape(struct adder *a, const struct sr_pbrt_shape *s, struc
         struct sr_pbrt_named_shape *named = sr_array_push(&b->named_shapes, sizeof *named);
         if (!named)
             return sr_pbrt_no_memory(b);
-        *named = (struct sr_pbrt_named_shape){s->name, shapes[i], s->object1 != 0};
+        *named = (struct sr_pbrt_named_shape){s->name, shapes[i], s->object1 != 0, def.motion != NULL};
     }
     const struct sr_shape_model *m = is_ply(s) ? NULL : sr_shape_model_find(s->entity.model);
     sr_pbrt_warn_unused(b, &s->entity, m ? m->params : ply_params, common_params);
@@ -341,9 +353,16 @@ static sr_status add_instances(struct adder *a)
                                 "ObjectInstance \"%s\": no object has this name%s", instance->name,
                                 sr_pbrt_suggestion_text(&s, buffer));
         }
-        if (a->objects[object1 - 1].index1)
-            sr_scene_add_instance(b->result->scene, a->objects[object1 - 1],
-                                  &sr_pbrt_transform_of(b, instance->transform)->start);
+        sr_object_id object = a->objects[object1 - 1];
+        const struct sr_motion *motion;
+        if (!object.index1)
+            continue;
+        if (!sr_pbrt_moves(b, instance->transform))
+            sr_scene_add_instance(b->result->scene, object, &sr_pbrt_transform_of(b, instance->transform)->start);
+        else if (sr_pbrt_motion(b, instance->transform, false, "ObjectInstance", instance->where, &motion) == SR_OK)
+            sr_scene_add_moving_instance(b->result->scene, object, motion);
+        else
+            return b->error->status;
     }
     return SR_OK;
 }

@@ -183,6 +183,8 @@ sr_status sr_pbrt_read_transform_times(struct sr_pbrt_parser *p)
     double v[2];
     if (sr_pbrt_read_numbers(p, 2, v) != SR_OK)
         return p->error->status;
+    if (!(v[0] <= v[1]) || !isfinite(v[0]) || !isfinite(v[1]))
+        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "TransformTimes %g %g: expected two times, the earlier one first", v[0], v[1]);
     p->d->transform_start_time = (float)v[0];
     p->d->transform_end_time = (float)v[1];
     return SR_OK;
