@@ -181,7 +181,7 @@ TEST(transforms_compose_from_the_right)
     EXPECT_NEAR(q.y, 1, 1e-6);
     EXPECT_NEAR(t[s[5].entity.transform].start.m[0][3], 0, 1e-6);
     EXPECT_NEAR(t[s[5].entity.transform].end.m[1][3], 1, 1e-6);
-    EXPECT(strstr(warnings, "motion blur") != NULL);
+    EXPECT(strstr(warnings, "moves") == NULL);
     forget(&p);
 }
 

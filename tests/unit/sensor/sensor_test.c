@@ -323,13 +323,13 @@ TEST(connections_are_rays_backwards)
             struct sr_sensor_ray r = look(&m, q.x, q.y, u);
             float t = 0.2f + 4 * sr_rng_float(&rng);
             struct sr_sensor_view v;
-            EXPECT(m.model->connect(m.self, sr_mad(r.ray.o, t, r.ray.d), u, &v));
+            EXPECT(m.model->connect(m.self, sr_mad(r.ray.o, t, r.ray.d), 0, u, &v));
             EXPECT_NEAR(v.raster.x, q.x, 2e-3);
             EXPECT_NEAR(v.raster.y, q.y, 2e-3);
             EXPECT_NEAR(v.distance, t, 1e-5 * (double)t + 3e-6);
             EXPECT_NEAR(sr_length(sr_add(v.wi, r.ray.d)), 0, 3e-5);
             EXPECT_NEAR(sr_length(sr_sub(v.p, r.ray.o)), 0, 2e-5);
-            EXPECT_RELATIVE(v.weight, m.model->density(m.self, r.ray.d, t), 2e-4);
+            EXPECT_RELATIVE(v.weight, m.model->density(m.self, r.ray.d, t, 0), 2e-4);
             // the raster's area is that of the cross section which its corners' rays cut out
             if (k == 4 && i > 200)
                 continue; // the octahedral map's creases are nearly everywhere within reach of coarse steps
@@ -363,7 +363,7 @@ TEST(importance_integrates_to_the_raster)
             sr_vec3 n = sr_warp_uniform_sphere((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)});
             struct sr_sensor_view v;
             double value = 0;
-            if (m.model->connect(m.self, sr_mad(axis.ray.o, radius, n), (sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)}, &v) && v.raster.x >= 0 &&
+            if (m.model->connect(m.self, sr_mad(axis.ray.o, radius, n), 0, (sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)}, &v) && v.raster.x >= 0 &&
                 v.raster.x < 40 && v.raster.y >= 0 && v.raster.y < 24 && sr_dot(n, v.wi) < 0)
                 value = (double)(v.weight * -sr_dot(n, v.wi)) * 4 * (double)SR_PI * (double)(radius * radius);
             sr_tally_add(&all, value);
