@@ -53,7 +53,7 @@ static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, s
     if (!material || !self)
         return sr_pbrt_no_memory(b);
     sr_status status = sr_pbrt_bind(b, m->params, e, (struct sr_pbrt_use){SR_PARAM_ALBEDO, false}, self);
-    if (status == SR_OK)
+    if (status == SR_OK && !m->choose) // a mix leaves the maps to its parts
         status = sr_pbrt_bind(b, common_params, e, (struct sr_pbrt_use){SR_PARAM_ALBEDO, false}, &common);
     if (status == SR_OK && common.normal_map) // directions, so linear
         status = sr_pbrt_texels(b, common.normal_map, sr_pbrt_find(&e->params, "normalmap")->where, 1, true,
@@ -134,8 +134,8 @@ sr_status sr_pbrt_materials(struct sr_pbrt_build *b, const struct sr_pbrt_param 
         if (status != SR_OK)
             return status;
         if (!list[i])
-            return sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT,
-                                "\"string %s\": \"%s\" is an interface, which cannot be mixed", p->name, p->strings[i]);
+            sr_pbrt_warn(b->d, p->where, "\"string %s\": \"%s\" is an interface: paths go through its share, but shadows are whole, as pbrt's; \"alpha\" of a shape makes true holes",
+                         p->name, p->strings[i]);
     }
     *out = (struct sr_slice){list, p->count};
     return SR_OK;
