@@ -185,6 +185,18 @@ static uint32_t add_area_lights(struct sr_scene *scene, const struct sr_shape_de
     return first;
 }
 
+static void count_primitives(struct sr_scene_counts *counts, struct sr_shape shape, uint32_t n)
+{
+    if (shape.model == &sr_shape_trianglemesh)
+        counts->triangles += n;
+    else if (shape.model == &sr_shape_bilinearmesh)
+        counts->patches += n;
+    else if (shape.model == &sr_shape_curve)
+        counts->curves += ((const struct sr_shape_curves *)shape.self)->count;
+    else
+        counts->quadrics += n;
+}
+
 /* What rays can meet of an object, in the order of description. */
 static void place_shapes(struct sr_scene *scene, struct object *object, bool is_world)
 {
@@ -200,11 +212,11 @@ static void place_shapes(struct sr_scene *scene, struct object *object, bool is_
         uint32_t number = ++scene->counts.objects > UINT32_MAX ? UINT32_MAX : (uint32_t)scene->counts.objects;
         float alpha = 1;
         bool is_invisible = def->alpha.model && sr_texture_is_constant_float(def->alpha, &alpha) && alpha <= 0;
-        bool has_light = def->emission && is_world;
+        bool has_light = def->emission && is_world && def->shape.model->sample;
         uint32_t per_light = 1, first_light = has_light ? add_area_lights(scene, def, is_invisible, &per_light) : SR_NO_LIGHT;
         uint32_t n = def->shape.model->primitive_count(def->shape.self);
         bool is_mesh = def->shape.model == &sr_shape_trianglemesh;
-        *(is_mesh ? &scene->counts.triangles : def->shape.model == &sr_shape_bilinearmesh ? &scene->counts.patches : &scene->counts.quadrics) += n;
+        count_primitives(&scene->counts, def->shape, n);
         // a surface that neither scatters nor glows nor parts media is not there; nor is one without coverage
         if (n == 0 || is_invisible || (material_number == 0 && !has_light && !def->media))
             continue;

@@ -118,7 +118,7 @@ bool sr_scene_moves(const struct sr_scene *scene); // whether anything does whil
 struct sr_box sr_scene_bounds(const struct sr_scene *scene);
 
 struct sr_scene_counts {
-    uint64_t triangles, patches, quadrics, instances, objects, lights, materials; // [1]
+    uint64_t triangles, patches, quadrics, curves, instances, objects, lights, materials; // [1]
     uint64_t geometry_B, acceleration_B;                                          // [B]
     uint64_t degenerate; // primitives of no area or with coordinates that are no numbers: left out
     double build_s;      // [s]

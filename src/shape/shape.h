@@ -56,9 +56,12 @@ struct sr_shape_model {
     void (*point)(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_point *x);
     /* The same for surfaces without texture and tangent: p, p_error, n and ns alone. NULL: point serves. */
     void (*bare_point)(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_point *x);
+    /* The same for surfaces that turn to whoever looks at them along d (any length). NULL: point serves. */
+    void (*seen_point)(const void *self, uint32_t primitive, sr_vec2 hit, sr_vec3 d, struct sr_point *x);
     sr_vec2 (*uv)(const void *self, uint32_t primitive, sr_vec2 hit); // texture coordinates alone, for alpha tests
 
-    /* A point on the primitive for light that arrives at reference; NULL reference: by area. false: none. */
+    /* A point on the primitive for light that arrives at reference; NULL reference: by area. false: none. Where sample is NULL
+     * the shape cannot shine, nor be measured on. */
     bool (*sample)(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec2 u, struct sr_shape_sample *s);
     /* Density [1/sr] with which sample(reference) would have drawn the direction wi that meets the primitive at `there`. */
     float (*pdf)(const void *self, uint32_t primitive, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there);
@@ -122,6 +125,34 @@ struct sr_shape_loopsubdiv {
     struct sr_slice P;         // sr_vec3 [m]
 };
 
+/* ---- curves ---- */
+
+/* What one directive says. */
+struct sr_shape_curve {
+    float width, width0, width1; // [m] NaN: width
+    int32_t degree, basis, type; // 2 or 3; bezier, bspline; flat, ribbon, cylinder
+    int32_t split_depth;         // [1]
+    struct sr_slice P;           // sr_vec3 [m]
+    struct sr_slice N;           // sr_vec3 [1], of ribbons
+};
+/* Any number of segments of one type. Its hit is (u, v). */
+struct sr_shape_curves {
+    struct sr_shape_curve one; // parameters, where it is made of one
+    // derived
+    struct sr_transform object_to_world;
+    bool is_here; // all is in the space of placement, else in object space
+    bool flip_normals;
+    int32_t type;
+    uint32_t count, split; // segments, each of 2^split primitives
+    const struct sr_shape_curve_segment *segments;
+    const void *normals;
+};
+/* Checks them; how many segments they have, or 0 and an error. */
+uint32_t sr_shape_curve_segments(const struct sr_shape_curve *c, struct sr_error *error);
+/* Many curves as one shape; what the curves point to is copied. The first one's type and split_depth are those of all. */
+sr_status sr_shape_curves_make(const struct sr_shape_curve *curves, uint32_t count, const struct sr_shape_placement *placement,
+                               struct sr_arena *arena, struct sr_shape_curves *out, struct sr_error *error);
+
 /* ---- quadrics ----
  * They live in object space in double and are placed by an affine transform. Outside is away from the axis or centre (disk:
  * +z of the object), transformed as a normal; a mirror leaves it outside, reverse_orientation turns it. A partial quadric
@@ -157,6 +188,6 @@ struct sr_shape_cylinder {
     struct sr_shape_quadric quadric;
 };
 extern const struct sr_shape_model sr_shape_trianglemesh, sr_shape_bilinearmesh, sr_shape_sphere, sr_shape_disk, sr_shape_cylinder,
-    sr_shape_loopsubdiv;
+    sr_shape_loopsubdiv, sr_shape_curve;
 
 #endif

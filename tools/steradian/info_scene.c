@@ -67,8 +67,8 @@ static void print_scene(const char *path, const struct sr_import_result *r, unsi
     printf("  lights       %llu", (unsigned long long)c.lights);
     for (int i = 0; i < lights.n; ++i)
         printf("%s %llu %s", i ? "," : ":", lights.count[i], lights.name[i]);
-    printf("\n  surfaces     %llu triangles, %llu patches, %llu quadrics; %llu instances of %llu objects\n",
-           (unsigned long long)c.triangles, (unsigned long long)c.patches, (unsigned long long)c.quadrics,
+    printf("\n  surfaces     %llu triangles, %llu patches, %llu quadrics, %llu curves; %llu instances of %llu objects\n",
+           (unsigned long long)c.triangles, (unsigned long long)c.patches, (unsigned long long)c.quadrics, (unsigned long long)c.curves,
            (unsigned long long)c.instances, (unsigned long long)c.objects);
     if (c.degenerate)
         printf("               %llu primitives without area were left out\n", (unsigned long long)c.degenerate);
@@ -106,7 +106,7 @@ static int print_scene_json(const char *path, const struct sr_import_result *r, 
                             json_integer((json_int_t)kinds.count[i]));
     json_t *j = json_pack(
         "{s:o, s:s, s:s, s:i, s:s, s:{s:i, s:i, s:i, s:i, s:i, s:i, s:s, s:s, s:o, s:o}, s:{s:s, s:o, s:o, s:s}, s:s,"
-        " s:{s:s, s:I, s:I}, s:{s:o, s:o, s:s}, s:o, s:{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I}, s:o, s:{s:I, s:I, "
+        " s:{s:s, s:I, s:I}, s:{s:o, s:o, s:s}, s:o, s:{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I}, s:o, s:{s:I, s:I, "
         "s:I}, s:{s:o, s:o}}",
         "file", command_json_text(path), "kind", "scene", "hash", hash, "warnings", (int)warnings, "sensor",
         r->sensor.model->name, "film", "width", (int)f->width, "height", (int)f->height, "x0", (int)f->x0, "x1",
@@ -119,7 +119,7 @@ static int print_scene_json(const char *path, const struct sr_import_result *r, 
         (json_int_t)r->seed, "wavelengths", "min", command_json_number((double)SR_LAMBDA_MIN), "max",
         command_json_number((double)SR_LAMBDA_MAX), "unit", "nm", "lights", lights, "counts", "lights",
         (json_int_t)c.lights, "triangles", (json_int_t)c.triangles, "patches", (json_int_t)c.patches, "quadrics",
-        (json_int_t)c.quadrics, "instances", (json_int_t)c.instances, "objects", (json_int_t)c.objects, "materials",
+        (json_int_t)c.quadrics, "curves", (json_int_t)c.curves, "instances", (json_int_t)c.instances, "objects", (json_int_t)c.objects, "materials",
         (json_int_t)c.materials, "primitives_without_area", (json_int_t)c.degenerate, "bounds",
         bounds_json(sr_scene_bounds(r->scene)), "memory", "geometry_B", (json_int_t)c.geometry_B, "acceleration_B",
         (json_int_t)c.acceleration_B, "peak_B", (json_int_t)sr_peak_memory_B(), "time", "read_s",

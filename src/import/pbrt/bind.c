@@ -150,7 +150,7 @@ static sr_status bind_run(struct sr_pbrt_build *b, const struct sr_pbrt_entity *
                             p->count, arity);
     size_t size = p->count * sizeof(float);
     const void *data = p->ints ? (const void *)p->ints : p->floats;
-    if (size <= SR_PBRT_SHORT_RUN_B) {
+    if (size <= SR_PBRT_SHORT_RUN_B && !b->is_borrowing) {
         void *copy = sr_arena_alloc(b->arena, size + 16);
         if (!copy)
             return sr_pbrt_no_memory(b);

@@ -52,6 +52,7 @@ struct sr_pbrt_build {
     int threads;
     uint64_t hash;
     float shutter_open, shutter_close; // [s]
+    bool is_borrowing; // what is bound ends before the description does: runs stay where they lie
     int depth; // of textures and materials being made
 
     struct sr_array named_shapes;             // struct sr_pbrt_named_shape, in the order of the file

@@ -69,6 +69,9 @@ static sr_status find_surface(struct sr_pbrt_build *b, const struct sr_pbrt_enti
                                 e->model, name);
         if (strcmp(named[i].name, name) == 0 && named[i].moves)
             return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT, "Meter \"%s\": the shape \"%s\" moves: expected one that stands", e->model, name);
+        if (strcmp(named[i].name, name) == 0 && !named[i].shape.model->sample)
+            return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT, "Meter \"%s\": the shape \"%s\" is a %s, which turns to whoever looks: nothing is measured on it",
+                                e->model, name, named[i].shape.model->name);
         if (strcmp(named[i].name, name) == 0)
             return make_surface(b, name, &common->surface);
         sr_pbrt_suggest(&s, named[i].name);

@@ -64,7 +64,7 @@ static void expect_warning(const char *text, const char *message)
 TEST(what_is_not_supported_says_so_and_what_is)
 {
     expect_error("WorldBegin\nShape \"cone\"", "2:1: Shape \"cone\" is not supported yet; supported: trianglemesh, "
-                                               "bilinearmesh, sphere, disk, cylinder, loopsubdiv, plymesh");
+                                               "bilinearmesh, sphere, disk, cylinder, loopsubdiv, curve, plymesh");
     expect_error(
         "WorldBegin\nMaterial \"velvet\"\n" BALL,
         "2:1: Material \"velvet\" is not supported yet; supported: diffuse, diffusetransmission, conductor, "
