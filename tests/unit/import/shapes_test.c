@@ -107,7 +107,7 @@ TEST(what_is_wrong_with_a_curve_is_told_where_it_stands)
     expect_error("WorldBegin\n" STRAND "\"float width\" -1\n", "expected 0 or more");
     expect_error("WorldBegin\n" STRAND "\"string type\" \"ribbon\"\n", "0 \"N\", expected 2");
     expect_error("WorldBegin\nShape \"curve\"\n", "0 \"P\"");
-    expect_error("WorldBegin\n#@ Name \"hair\"\n" STRAND "\n#@ Meter \"irradiance\" \"string surface\" \"hair\"\n", "which turns to whoever looks");
+    expect_error("WorldBegin\n#@ Name \"hair\"\n" STRAND "\n#@ Meter \"flux\" \"string surface\" \"hair\"\n", "which turns to whoever looks");
     expect_error("WorldBegin\nShape \"loopsubdiv\" \"integer levels\" 31\n", "expected 0 to 30");
     expect_error("WorldBegin\nShape \"loopsubdiv\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2] \"integer levels\" 20\n", "at most");
     expect_error("WorldBegin\nShape \"loopsubdiv\" \"point3 P\" [0 0 0 1 0 0 0 1 0]\n", "\"indices\" is missing");
