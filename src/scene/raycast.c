@@ -65,7 +65,11 @@ static inline bool raycast(const struct sr_scene *scene, const struct sr_ray *ra
         s->shape.model->bare_point(s->shape.self, rh.hit.primID, (sr_vec2){rh.hit.u, rh.hit.v}, &hit->point);
         hit->point.dpdus = (sr_vec3){0, 0, 0};
     } else if (SR_UNLIKELY(s->shape.model->seen_point)) {
-        sr_vec3 d = instance ? sr_inverse_vector(&instance->object_to_world, ray->d) : ray->d;
+        sr_vec3 d = ray->d;
+        if (instance) {
+            struct sr_transform t = instance_transform(instance, ray->time);
+            d = sr_inverse_vector(&t, d);
+        }
         s->shape.model->seen_point(s->shape.self, rh.hit.primID, (sr_vec2){rh.hit.u, rh.hit.v}, d, &hit->point);
     } else {
         s->shape.model->point(s->shape.self, rh.hit.primID, (sr_vec2){rh.hit.u, rh.hit.v}, &hit->point);

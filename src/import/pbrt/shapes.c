@@ -113,12 +113,17 @@ static bool moves(const struct sr_pbrt_build *b, const struct sr_pbrt_shape *s)
     return sr_pbrt_moves(b, s->entity.transform) && (!s->area_light1 || s->object1);
 }
 
+/* What moves is made in its own space. */
+static struct sr_shape_placement placement_of(const struct sr_pbrt_build *b, const struct sr_pbrt_shape *s)
+{
+    struct sr_transform own = moves(b, s) ? sr_transform_identity() : sr_pbrt_transform_of(b, s->entity.transform)->start;
+    return (struct sr_shape_placement){own, s->reverse_orientation};
+}
+
 static sr_status prepare(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, const struct sr_shape_model *m,
                          void *self, struct sr_shape *out)
 {
-    // what moves is made in its own space
-    struct sr_transform own = moves(b, s) ? sr_transform_identity() : sr_pbrt_transform_of(b, s->entity.transform)->start;
-    struct sr_shape_placement placement = {own, s->reverse_orientation};
+    struct sr_shape_placement placement = placement_of(b, s);
     struct sr_error inner = {0};
     *out = (struct sr_shape){m->becomes ? m->becomes : m, self};
     return m->prepare(self, &placement, b->arena, &inner) == SR_OK ? SR_OK : sr_pbrt_wrap(b, &s->entity, &inner);
@@ -372,7 +377,7 @@ static sr_status make_curves(struct adder *a, const struct sr_pbrt_shape *s, str
         else
             *slot = curve;
     }
-    struct sr_shape_placement placement = {sr_pbrt_transform_of(b, s->entity.transform)->start, s->reverse_orientation};
+    struct sr_shape_placement placement = placement_of(b, s);
     struct sr_error inner = {0};
     if (status == SR_OK && sr_shape_curves_make(curves.data, (uint32_t)curves.count, &placement, b->arena, self, &inner) != SR_OK)
         status = sr_pbrt_wrap(b, &s->entity, &inner);
