@@ -3,10 +3,14 @@
 #include "import/describe.h"
 
 #include "import/gltf/gltf.h"
+#include "import/obj.h"
 
 static const struct sr_import_format formats[] = {
     {".gltf", sr_gltf_read},
     {".glb", sr_gltf_read},
+    {".obj", sr_obj_read},
+    {".stl", sr_stl_read},
+    {".ply", sr_ply_scene_read},
     {NULL, NULL},
 };
 

@@ -45,6 +45,7 @@ static const char *type_of(enum sr_param_kind kind)
     case SR_PARAM_POINT3S: return "point3[]";
     case SR_PARAM_VECTOR3S: return "vector3[]";
     case SR_PARAM_NORMAL3S: return "normal[]";
+    case SR_PARAM_RGBS: return "rgb[]";
     }
     return "?";
 }

@@ -89,16 +89,28 @@ static bool reads_back_double(const char *text, double value)
     return sr_number_read(text, &ours) && ours == value && strtod(text, NULL) == value;
 }
 
-void sr_print_float(struct sr_print *out, float value)
+static void write_float(char text[40], float value)
 {
-    char text[40];
     for (int digits = 6; digits <= 12; ++digits) { // %g drops zeros at the end, so six digits are also one
-        snprintf(text, sizeof text, "%.*g", digits, (double)value);
+        snprintf(text, 40, "%.*g", digits, (double)value);
         shorten_exponent(text);
         if (reads_back_float(text, value))
             break;
     }
+}
+
+void sr_print_float(struct sr_print *out, float value)
+{
+    char text[40];
+    write_float(text, value);
     sr_print_word(out, text);
+}
+
+double sr_print_few_digits(float value)
+{
+    char text[40];
+    write_float(text, value);
+    return strtod(text, NULL);
 }
 
 void sr_print_double(struct sr_print *out, double value)
@@ -150,7 +162,7 @@ static void print_value(struct sr_print *out, const struct sr_pbrt_param *p, uin
 /* column: where the line began; 0 width: never a new line */
 static void print_param(struct sr_print *out, const struct sr_pbrt_param *p, bool may_wrap)
 {
-    size_t line = out->size;
+    size_t line = out->size - 4; // where the name's line began, more or less
     uint32_t tuple = tuple_of(p);
     sr_print_word(out, "\"");
     sr_print_word(out, sr_pbrt_type_name(p->type));
@@ -163,7 +175,7 @@ static void print_param(struct sr_print *out, const struct sr_pbrt_param *p, boo
     }
     sr_print_word(out, "[");
     for (uint32_t i = 0; i < p->count && !out->has_failed; ++i) {
-        if (may_wrap && i % tuple == 0 && out->size - line > WIDTH - 24) {
+        if (may_wrap && i % tuple == 0 && out->size - line > WIDTH - 16) {
             sr_print_word(out, "\n");
             line = out->size;
             sr_print_line(out, 2);

@@ -21,6 +21,7 @@ void sr_print_quoted(struct sr_print *out, const char *text);
 /* The fewest digits that our reader and strtof take back to the same float; of doubles the same. */
 void sr_print_float(struct sr_print *out, float value);
 void sr_print_double(struct sr_print *out, double value);
+double sr_print_few_digits(float value); // of the decimal that is written for it
 /* The parameters behind what stands on the line already: there if they fit, else each on a line of its own. Ends the line. */
 void sr_print_params(struct sr_print *out, const struct sr_pbrt_params *params);
 

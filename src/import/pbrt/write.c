@@ -30,7 +30,7 @@ static void print_transform(struct writer *w, const char *word, uint32_t index)
         return;
     struct sr_pbrt_statement s = {.word = word, .number_count = 16};
     for (int i = 0; i < 16; ++i)
-        s.numbers[i] = (double)t->m[i % 4][i / 4]; // column by column
+        s.numbers[i] = sr_print_few_digits(t->m[i % 4][i / 4]); // column by column
     sr_pbrt_statement_print(w->out, &s);
 }
 
