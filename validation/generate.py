@@ -66,7 +66,7 @@ def dot(a, b):
     return sum(x * y for x, y in zip(a, b))
 
 
-def irradiance(name, ident, what, source, content, E, p=(0, 0, 0), n=(0, 0, 1), within=0.0, head=""):
+def irradiance(name, ident, what, source, content, E, p=(0, 0, 0), n=(0, 0, 1), within=0.0, head="", integrator="path"):
     """A point receiver: a meter, and a grey patch of 2 mm that a camera sees."""
     n = unit(n)
     t = unit(cross(n, (0, 1, 0) if abs(n[1]) < 0.9 else (1, 0, 0)))
@@ -75,7 +75,7 @@ def irradiance(name, ident, what, source, content, E, p=(0, 0, 0), n=(0, 0, 1), 
     eye = [p[i] + 0.01 * (n[i] + 0.5 * t[i]) for i in range(3)]
     patch = f'AttributeBegin\n{grey(0.5)}Shape "bilinearmesh" "point3 P" {v(*corners)}\nAttributeEnd\n'
     meter = f'#@ Meter "irradiance" "string name" "E" "point3 p" {v(*p)} "normal n" {v(*n)}\n'
-    case(name, ident, what, source, view(eye, p, up=t) + patch + f'AttributeBegin\n{content}AttributeEnd\n' + meter, [("E", E, "lx", within)], head=head)
+    case(name, ident, what, source, view(eye, p, up=t) + patch + f'AttributeBegin\n{content}AttributeEnd\n' + meter, [("E", E, "lx", within)], head=head, integrator=integrator)
 
 
 def radiance(name, ident, what, source, content, L, o, d, within=0.0, depth=1, head="", integrator="path"):
@@ -435,6 +435,110 @@ def lamps():
                  f'AreaLightSource "diffuse" "blackbody L" {kelvin}\nShape "disk" "float radius" 1\n', luminance, (0, 0, 1), (0, 0, -1), within=1e-5, head='#@ Option "string units" "si"\n')
 
 
+# ---- H: media ----
+
+def medium(albedo, sigma_t, extra=""):
+    return (f'MakeNamedMedium "m" "string type" "homogeneous" "spectrum sigma_a" {v(300, (1 - albedo) * sigma_t, 900, (1 - albedo) * sigma_t)} '
+            f'"spectrum sigma_s" {v(300, albedo * sigma_t, 900, albedo * sigma_t)}{extra}\n')
+
+
+def layer(*planes):
+    """Interfaces at z, with the medium below (-1) or above (+1)."""
+    text = ""
+    for z, side in planes:
+        media = '"m" ""' if side < 0 else '"" "m"'
+        text += f'AttributeBegin\nMaterial "interface"\nMediumInterface {media}\nShape "disk" "float height" {z:g} "float radius" 1e3\nAttributeEnd\n'
+    return text
+
+
+SKY = 'LightSource "infinite" "float scale" 1\n'
+FLOOR = f'AttributeBegin\n{BLACK}Shape "disk" "float height" -3 "float radius" 1e3\nAttributeEnd\n'  # the sky shines from above only
+
+
+def fog(sigma, d):
+    radiance(f"fog_{sigma:g}_{d:g}", "H1" if (sigma, d) == (0.7, 2.5) else "H1 class", f"a surface of 1 cd/m^2 behind {d:g} m of absorber of {sigma:g}/m", "L = exp(-sigma d)",
+             f'AttributeBegin\n{BLACK}{GLOW_BOTH}Shape "disk" "float height" {d:g} "float radius" 1\nAttributeEnd\n', math.exp(-sigma * d), (0, 0, 0), (0, 0, 1),
+             head=medium(0, sigma) + 'MediumInterface "" "m"\n', integrator="volpath")
+
+
+def point_in_fog(sigma, r, I):
+    irradiance(f"fog_point_{sigma:g}_{r:g}", "H2", f"point of {I:g} cd in absorber of {sigma:g}/m, {r:g} m above", "E = I exp(-sigma r)/r^2",
+               f'LightSource "point" "point3 from" {v(0, 0, r)} "float power" {4 * PI * I:.12g}\n', I * math.exp(-sigma * r) / r**2,
+               head=medium(0, sigma) + 'MediumInterface "" "m"\n', integrator="volpath")
+
+
+def slab_once(albedo, tau, mu0, mu, is_reflected):
+    s0, s = math.sqrt(1 - mu0 * mu0), math.sqrt(1 - mu * mu)
+    if is_reflected:
+        L = albedo / (4 * PI) * mu0 / (mu0 + mu) * (1 - math.exp(-tau * (1 / mu + 1 / mu0)))
+    else:
+        L = albedo / (4 * PI) * mu0 / (mu0 - mu) * (math.exp(-tau / mu0) - math.exp(-tau / mu))
+    radiance(f"slab_once_{'reflected' if is_reflected else 'transmitted'}", "H3r" if is_reflected else "H3t", f"slab of depth {tau:g} and albedo {albedo:g}, lit and seen aslant: scattered once",
+             "Chandrasekhar 1950", f'LightSource "distant" "float illuminance" 1 "point3 from" {v(s0, 0, mu0)} "point3 to" [0 0 0]\n' + layer((0, -1), (-tau, 1)), L,
+             (0, 0, 1 if is_reflected else -tau - 1), (0, s, -mu if is_reflected else mu), head=medium(albedo, 1), integrator="volpath")
+
+
+def chandrasekhar_H(mu, albedo, n=20000):
+    """ln H(mu) = -(mu/pi) INTEGRAL_0^inf ln(1 - albedo atan(t)/t) / (1 + mu^2 t^2) dt; t = tan(a)."""
+    total = 0.0
+    for i in range(n):
+        a = (i + 0.5) * PI / 2 / n
+        t = math.tan(a)
+        total += math.log(1 - albedo * a / t) * (1 + t * t) / (1 + mu * mu * t * t)
+    return math.exp(-mu / PI * total * PI / 2 / n)
+
+
+def half_space(albedo, mu):
+    radiance(f"half_space_{albedo:g}_{mu:g}", f"H6.{albedo:g}.{mu:.1f}", f"half-space of albedo {albedo:g} under an even sky, seen under mu = {mu:g}", "1 - sqrt(1 - albedo) H(mu), Chandrasekhar 1950",
+             SKY + layer((0, -1)), 1 - math.sqrt(1 - albedo) * chandrasekhar_H(mu, albedo), (0, 0, 1), (0, math.sqrt(1 - mu * mu), -mu), within=1e-6, depth=10000, head=medium(albedo, 1),
+             integrator="volpath")
+
+
+def slab(albedo, mu, R, T):
+    s = math.sqrt(1 - mu * mu)
+    for name, ident, L, z in (("reflected", "H11", R, 1), ("transmitted", "H11t", T, -2)):
+        radiance(f"slab_{name}_{albedo:g}_{mu:g}", f"{ident}.1.{albedo:g}.{mu:g}", f"slab of depth 1 and albedo {albedo:g} under half an even sky, seen under mu = {mu:g}",
+                 "van de Hulst 1980; Milne's integral equation by Nystrom's method", SKY + FLOOR + layer((0, -1), (-1, 1)), L, (0, 0, z), (0, s, -mu if z > 0 else mu), within=1e-7, depth=10000,
+                 head=medium(albedo, 1), integrator="volpath")
+
+
+def absorbing_slab(tau):
+    """2 E3(tau) = 2 INTEGRAL_0^1 mu exp(-tau/mu) dmu."""
+    n = 20000
+    T = 2 * sum((i + 0.5) / n * math.exp(-tau * n / (i + 0.5)) for i in range(n)) / n
+    irradiance(f"slab_absorber_{tau:g}", "H10", f"an even sky above an absorber of depth {tau:g}", "E = 2 pi E3(tau)", SKY + layer((2, -1), (1, 1)), PI * T, head=medium(0, tau),
+               within=1e-8, integrator="volpath")
+
+
+def glowing_ball(tau, b):
+    radiance(f"glowing_ball_{tau:g}_{b:g}", "H9 class", f"ball of glowing absorber of optical radius {tau:g}, seen {b:g} radii beside its centre", "L = 1 - exp(-2 tau sqrt(1 - b^2))",
+             'AttributeBegin\nMaterial "interface"\nMediumInterface "m" ""\nShape "sphere"\nAttributeEnd\n', 1 - math.exp(-2 * tau * math.sqrt(1 - b * b)), (b, 0, -3), (0, 0, 1),
+             head=medium(0, tau, ' "spectrum Le" [300 1 900 1]'), integrator="volpath")
+
+
+def white_ball(sigma):
+    radiance(f"white_ball_{sigma:g}", "furnace", f"ball of a medium of {sigma:g}/m that absorbs nothing, in an even sky: it is not seen", "L = 1",
+             SKY + 'AttributeBegin\nMaterial "interface"\nMediumInterface "m" ""\nShape "sphere"\nAttributeEnd\n', 1, (0.3, 0, -3), (0, 0, 1), depth=100000, head=medium(1, sigma, ' "float g" 0.7'),
+             integrator="volpath")
+
+
+def media():
+    for sigma, d in ((0.7, 2.5), (0.1, 1), (3, 2)):
+        fog(sigma, d)
+    point_in_fog(0.3, 2, 10)
+    slab_once(0.8, 1, 0.6, 0.5, True)
+    slab_once(0.8, 1, 0.6, 0.5, False)
+    for albedo in (0.5, 0.9):
+        for mu in (0.5, 1):
+            half_space(albedo, mu)
+    slab(1, 1, 0.341328760066, 0.658671239934)
+    slab(0.9, 0.5, 0.393661658837, 0.414839902926)
+    absorbing_slab(1)
+    for tau, b in ((1, 0), (1, 0.8), (0.1, 0), (5, 0.8)):
+        glowing_ball(tau, b)
+    white_ball(3)
+
+
 def build():
     for h, d in ((2, 0), (3, 4), (3, 0), (3, 1), (3, 2)):
         point(h, d, 1000)
@@ -474,6 +578,7 @@ def build():
     skies()
     glass_and_metal()
     lamps()
+    media()
     header = ("case", "scene", "meter", "expected", "unit", "relative uncertainty of it", "what", "source")
     files["cases.tsv"] = "".join("\t".join(row) + "\n" for row in [header] + cases).encode()
 

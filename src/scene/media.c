@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Which medium is where: surfaces tell what is on their two sides, and nothing else does.
  *
- * A point's medium is that of the first surface with media along any ray from it. Limits: surfaces that contradict each other
- * are not noticed; a ray that slips between them finds what is around the scene. */
+ * A point's medium is that of the first surface with media along any ray from it. But files set a medium for the world outside of
+ * all that follows, so that opaque things are vacuum inside, sheets too: their backs tell nothing. Limits: surfaces that
+ * contradict each other are not noticed; a ray that slips between them finds what is around the scene; nor is the vacuum inside
+ * of glass found. */
 #include "scene/private.h"
 
 enum { MOST_PASSED = 1000 };
@@ -27,13 +29,19 @@ const struct sr_medium *sr_scene_sensor_medium(const struct sr_scene *scene)
     return scene->sensor_medium.model ? &scene->sensor_medium : NULL;
 }
 
+// seen along d
+static bool tells(const struct sr_hit *hit, sr_vec3 d)
+{
+    return hit->media && (!hit->material || hit->media->inside.model || sr_dot(hit->point.n, d) < 0);
+}
+
 const struct sr_medium *sr_scene_medium_at(const struct sr_scene *scene, const struct sr_ray *ray)
 {
     struct sr_ray next = *ray;
     struct sr_hit hit;
     next.t_max = INFINITY;
     for (int passed = 0; scene->has_media && passed < MOST_PASSED && sr_raycast_bare(scene, &next, &hit); ++passed) {
-        if (hit.media)
+        if (tells(&hit, ray->d))
             return sr_hit_medium(&hit, sr_neg(ray->d), NULL);
         next.o = sr_point_offset(&hit.point, ray->d);
     }
@@ -58,7 +66,7 @@ void scene_find_media(struct sr_scene *scene)
         struct sr_ray ray = {.o = sr_mad(target, -3 * radius, d), .d = d, .t_max = INFINITY};
         struct sr_hit hit;
         for (int passed = 0; passed < MOST_PASSED && sr_raycast_bare(scene, &ray, &hit); ++passed) {
-            if (hit.media) {
+            if (tells(&hit, d)) {
                 scene->around = sr_hit_medium(&hit, sr_neg(d), NULL);
                 return;
             }
