@@ -81,7 +81,7 @@ TEST(what_is_not_supported_says_so_and_what_is)
                  "2:1: sensor \"nikon_d850\" is not supported yet; supported: cie1931");
     expect_error("WorldBegin Texture \"t\" \"spectrum\" \"marzipan\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\" " BALL,
                  "1:12: Texture \"marzipan\" is not supported yet; supported: constant, scale, mix, bilerp, checkerboard, "
-                 "imagemap, dots, directionmix, marble");
+                 "imagemap, dots, directionmix, marble, texelmap, attribute, product");
     expect_error("WorldBegin Texture \"t\" \"float\" \"marble\"\nShape \"sphere\" \"texture alpha\" \"t\"",
                  "1:12: Texture \"marble\" is not supported yet; supported: constant, scale, mix, bilerp, checkerboard, "
                  "imagemap, dots, directionmix, fbm, wrinkled, windy");
