@@ -18,10 +18,15 @@
  * What differs from a full solution of the layers, and from OpenPBR's own suggestions: layers are joined by directional albedos
  * E of the layer above (tables of Schlick's split, made when the first material is loaded) in a form that is the same from
  * both sides, which OpenPBR leaves open, and which returns up to 1.1 times what arrives at grazing; light is lost between
- * facets; fuzz is not Zeltner's. Not here: subsurface scattering, volumes of transmission_depth, dispersion, thin walls, thin
- * film, coat anisotropy, opacity, emission; they belong to media, other models and the scene. Light is refracted by the
+ * facets; fuzz is not Zeltner's. Not here: subsurface scattering, volumes of transmission_depth, dispersion,
+ * coat anisotropy, opacity, emission; they belong to media, other models and the scene. Light is refracted by the
  * index that specular_weight has changed, so that it is the same from both sides. From below, what is not glass looks as
- * from above. */
+ * from above.
+ *
+ * Thin walls: the glass is a pane without roughness for what goes through it; it reflects 2 F / (1 + F), all bounces inside.
+ * Thin film: metal and gloss reflect lerp(weight, F, |r|^2), with r = (r_01 + r_12 e) / (1 + r_01 r_12 e), e = exp(4 pi i n d
+ * cos / lambda) of both polarisations, above a base of the real index that reflects as the base does at normal incidence (as L.
+ * Belcour & P. Barla 2017 and glTF's iridescence); glass has no film. For the matter below, the film's mean over phases counts. */
 #include "bsdf/burley.h"
 #include "bsdf/charlie.h"
 
@@ -29,11 +34,13 @@
 
 struct openpbr {
     sr_spectrum base_color, specular_color, transmission_color, coat_color, fuzz_color; // [1]
+    sr_spectrum rho, again, edge, absorb;  // derived: EON's colour, and what it scatters again; F82's subtrahend; ln C_c / 2
+    sr_spectrum lambda;                    // derived [nm], where there is a film
     float base_weight, base_diffuse_roughness, base_metalness, specular_weight, specular_roughness,
         specular_roughness_anisotropy, specular_ior, transmission_weight, coat_weight, coat_roughness, coat_ior,
         coat_darkening, fuzz_weight, fuzz_roughness; // [1]
+    float thin_walled, film_weight, film_um, film_ior; // [1] [1] [um] [1]
     // derived
-    sr_spectrum rho, again, edge, absorb;  // EON's colour, and what it scatters again; F82's subtrahend; ln C_c / 2
     struct sr_ggx ggx, coat;
     float metal, gloss, glass;             // [1] shares
     float eta, eta_s;                      // [1] of the glass, 1: light goes straight on; of the gloss under the coat
@@ -42,6 +49,7 @@ struct openpbr {
     float A;                               // EON's
     float alpha, coat_alpha;               // [1] for the tables: geometric means
     struct charlie fuzz;
+    float pane;                            // [1] index of a thin wall's glass; 0: solid
 };
 _Static_assert(sizeof(struct openpbr) <= SR_BSDF_SIZE, "too large for a BSDF at a point");
 
@@ -77,6 +85,10 @@ static const struct sr_param params[] = {
     {SR_PARAM_ALBEDO, "fuzz_color", "1", 0, 1, 1, offsetof(struct openpbr, fuzz_color), "of the fibres"},
     {SR_PARAM_FLOAT, "fuzz_roughness", "1", 0.1, 1, 0.5, offsetof(struct openpbr, fuzz_roughness),
      "how far the fibres spread from the horizon"},
+    {SR_PARAM_FLOAT, "thin_walled", "1", 0, 1, 0, offsetof(struct openpbr, thin_walled), "above 0.5: the glass is a pane"},
+    {SR_PARAM_FLOAT, "thin_film_weight", "1", 0, 1, 0, offsetof(struct openpbr, film_weight), "share that bears a film"},
+    {SR_PARAM_FLOAT, "thin_film_thickness", "um", 0, 10, 0.5, offsetof(struct openpbr, film_um), "of the film"},
+    {SR_PARAM_FLOAT, "thin_film_ior", "1", 1, 3, 1.4, offsetof(struct openpbr, film_ior), "index of refraction of the film"},
     {0},
 };
 
@@ -161,7 +173,6 @@ static float normal_reflectance(float eta)
 static void ready(void *self, const struct sr_bsdf_at *at)
 {
     struct openpbr *m = self;
-    (void)at;
     m->metal = m->base_metalness;
     m->gloss = (1 - m->metal) * (1 - m->transmission_weight);
     m->glass = (1 - m->metal) * m->transmission_weight;
@@ -177,10 +188,16 @@ static void ready(void *self, const struct sr_bsdf_at *at)
     float e = sqrtf(sr_min(m->specular_weight * normal_reflectance(m->specular_ior), 0.8f));
     float e_s = sqrtf(sr_min(m->specular_weight * normal_reflectance(under), 0.8f));
     m->eta = (1 + e) / (1 - e);
-    if (m->eta < 1 + 1e-3f) // turns light by less than slopes of floats tell
+    m->pane = m->thin_walled > 0.5f && m->eta > 1 ? m->eta : 0;
+    if (m->pane > 0 || m->eta < 1 + 1e-3f) // turns light by less than slopes of floats tell
         m->eta = 1;
     m->eta_s = (1 + e_s) / (1 - e_s);
     m->gloss0 = normal_reflectance(m->eta_s);
+    if (m->film_weight > 0) {
+        m->lambda = at->lambda;
+        float a = normal_reflectance(m->film_ior), b = normal_reflectance(m->eta_s / m->film_ior);
+        m->gloss0 = sr_lerp(m->film_weight, m->gloss0, (a + b - 2 * a * b) / (1 - a * b));
+    }
 
     float r2 = sr_sqr(m->specular_roughness), c2 = sr_sqr(m->coat_roughness);
     float rough = sqrtf(sqrtf(sr_min(1, r2 * r2 + 2 * c2 * c2)));
@@ -233,23 +250,52 @@ static sr_spectrum eon(const struct openpbr *m, sr_vec3 wo, sr_vec3 wi, float co
     return value;
 }
 
+/* Reflectance of the film on a base of real index n, for light that comes at the cosine c. */
+static sr_spectrum film(const struct openpbr *m, sr_spectrum n, float c)
+{
+    c = sr_max(c, 1e-3f); // where all is reflected, phases are 0 / 0
+    float s2 = (1 - c) * (1 + c), n1 = m->film_ior, c1 = sr_safe_sqrt(1 - s2 / (n1 * n1));
+    float s01 = (c - n1 * c1) / (c + n1 * c1), p01 = (n1 * c - c1) / (n1 * c + c1);
+    sr_spectrum R;
+    for (int i = 0; i < SR_LAMBDA_COUNT; ++i) {
+        float c2 = sr_safe_sqrt(1 - s2 / (n[i] * n[i])), twice = 2 * cosf(4 * SR_PI * n1 * (1e3f * m->film_um) * c1 / m->lambda[i]);
+        float s12 = (n1 * c1 - n[i] * c2) / (n1 * c1 + n[i] * c2), p12 = (n[i] * c1 - n1 * c2) / (n[i] * c1 + n1 * c2);
+        float s = s01 * s12, p = p01 * p12;
+        R[i] = 0.5f * ((s01 * s01 + s12 * s12 + s * twice) / (1 + s * s + s * twice) + (p01 * p01 + p12 * p12 + p * twice) / (1 + p * p + p * twice));
+    }
+    return sr_spectrum_clamp(R, 0, 1);
+}
+
 static sr_spectrum metal_fresnel(const struct openpbr *m, float c)
 {
     sr_spectrum F = m->rho + (1 - m->rho) * schlick_weight(c) - m->edge * (c * (1 - c) * schlick_weight(c));
     return sr_spectrum_clamp(F * sr_min(m->specular_weight, 1), 0, 1);
 }
 
+static float pane_reflectance(const struct openpbr *m, float c)
+{
+    float unused, F = fresnel_and_cos(c, m->pane, &unused);
+    return 2 * F / (1 + F);
+}
+
 /* Reflectances of a facet seen at the cosine c, without and with the glass, and the share of samples that pass through. */
 struct facet {
     sr_spectrum metal, all; // [1] metal: its share counted
-    float gloss, glass;     // [1] Fresnel's
+    sr_spectrum gloss;      // [1] Fresnel's, or the film's
+    float glass;            // [1] the same
     float through;
 };
 static struct facet facet_of(const struct openpbr *m, float c, bool below)
 {
     float unused;
-    struct facet f = {.metal = m->metal * metal_fresnel(m, c), .gloss = fresnel_and_cos(c, m->eta_s, &unused)};
-    f.glass = fresnel_and_cos(c, below ? 1 / m->eta : m->eta, &unused);
+    struct facet f = {.metal = metal_fresnel(m, c), .gloss = SR_BLACK + fresnel_and_cos(c, m->eta_s, &unused)};
+    if (m->film_weight > 0) {
+        sr_spectrum root = sr_spectrum_sqrt(sr_spectrum_clamp(m->rho, 0, 0.98f));
+        f.metal += m->film_weight * (film(m, (1 + root) / (1 - root), c) - f.metal);
+        f.gloss += m->film_weight * (film(m, SR_BLACK + m->eta_s, c) - f.gloss);
+    }
+    f.metal *= m->metal;
+    f.glass = m->pane > 0 ? pane_reflectance(m, c) : fresnel_and_cos(c, below ? 1 / m->eta : m->eta, &unused);
     f.all = f.metal + (m->gloss * f.gloss + m->glass * f.glass);
     float T = m->eta == 1 ? 0 : m->glass * (1 - f.glass);
     f.through = T > 0 ? T / (T + sr_spectrum_mean(f.all)) : 0;
@@ -282,8 +328,12 @@ static struct choice choices(const struct openpbr *m, float co, bool below)
     struct choice c = {.diffuse = m->gloss * sr_spectrum_mean(m->rho),
                        .straight = m->eta == 1 ? m->glass : 0,
                        .specular = m->metal * sr_spectrum_mean(m->rho) + m->gloss * F + 1e-3f};
-    if (m->eta != 1)
-        c.specular += m->glass;
+    float straight = m->pane > 0 ? 1 - pane_reflectance(m, co) : 1;
+    c.straight *= straight;
+    if (m->eta != 1 || m->pane > 0)
+        c.specular += m->glass * (m->eta != 1 ? 1 : 1 - straight);
+    if (m->film_weight > 0)
+        c.specular += m->film_weight * (m->gloss * m->gloss0 + 0.2f * m->metal);
     if (m->fuzz_weight > 0)
         c.fuzz = opaque * m->fuzz_weight * look_up(FUZZ, m->fuzz.alpha, co);
     if (m->coat_weight > 0)
@@ -404,7 +454,7 @@ static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum s
         s->wi = sr_neg(wo);
         s->lobe = SR_LOBE_TRANSMISSION | SR_LOBE_SPECULAR;
         s->pdf = choose.straight;
-        s->f = through_layers(m, up.z) * (m->glass / up.z);
+        s->f = through_layers(m, up.z) * (m->glass / up.z * (m->pane > 0 ? 1 - pane_reflectance(m, up.z) : 1));
         return true;
     } else if ((u_lobe -= choose.straight) < choose.coat)
         s->wi = sr_reflect(up, ggx_sample_visible(m->coat, up, u));
@@ -434,8 +484,8 @@ const struct sr_bsdf_model sr_bsdf_openpbr = {
     .name = "openpbr",
     .title = "OpenPBR surface 1.1",
     .source = "OpenPBR Surface 1.1, Academy Software Foundation, 2024",
-    .limits = "layers are joined by their directional albedos, not solved; no subsurface scattering, volumes, dispersion, "
-              "thin film or thin walls; fuzz is Charlie's",
+    .limits = "layers are joined by their directional albedos, not solved; no subsurface scattering, volumes or "
+              "dispersion; fuzz is Charlie's",
     .params = params,
     .size = sizeof(struct openpbr),
     .load = load,

@@ -111,9 +111,3 @@ uint32_t sr_gltf_emission(struct sr_gltf *g, const struct sr_gltf_look *m, const
     g->has_emissive = true;
     return sr_compose_area_light(to);
 }
-
-void sr_gltf_put_film(struct sr_gltf *g, const struct sr_gltf_look *m)
-{
-    if (m->film > 0)
-        sr_gltf_warn(g, &m->at, "KHR_materials_iridescence is not supported");
-}

@@ -217,7 +217,6 @@ struct sr_gltf_needs sr_gltf_needs_of(const struct sr_gltf_look *look);
 /* Composes material and emission where they are new; sets c.material, c.area_light1, c.inside. *alpha: a float texture, or NULL. */
 void sr_gltf_wear(struct sr_gltf *g, const struct sr_gltf_look *look, const struct sr_gltf_surface *s, const char **alpha);
 uint32_t sr_gltf_emission(struct sr_gltf *g, const struct sr_gltf_look *look, const struct sr_gltf_surface *s); // area light
-void sr_gltf_put_film(struct sr_gltf *g, const struct sr_gltf_look *look);
 
 /* ---- pose.c, places.c, lights.c, camera.c ---- */
 

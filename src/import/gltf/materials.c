@@ -339,6 +339,32 @@ static void put_roughness(const struct maker *k, struct number roughness)
     sr_compose_float(&k->g->c, "specular_roughness", (float)fmin(sqrt(along / sqrt(2 / (1 + ratio * ratio))), 1));
 }
 
+struct film {
+    struct number weight, um;
+};
+
+static struct film film_of(const struct maker *k)
+{
+    const struct sr_gltf_look *m = k->m;
+    struct film f = {textured(k, "iridescence", m->film, &m->film_texture, "r"), {NULL, fmin(m->film_nm[1] * 1e-3, 10)}};
+    if (m->film > 0 && m->film_thickness_texture.info.json) {
+        double scale[3] = {(m->film_nm[1] - m->film_nm[0]) * 1e-3};
+        f.um.texture = sr_gltf_texelmap(k->g, k->s, &m->film_thickness_texture, "iridescence_thickness", "g", scale, m->film_nm[0] * 1e-3, false);
+    }
+    return f;
+}
+
+static void put_film(const struct maker *k, struct film f)
+{
+    if (!f.weight.texture && f.weight.value == 0)
+        return;
+    put(k, "thin_film_weight", f.weight, 0);
+    put(k, "thin_film_thickness", f.um, 0.5);
+    put(k, "thin_film_ior", (struct number){NULL, fmin(k->m->film_ior, 3)}, 1.4);
+    if (k->m->transmission > 0)
+        sr_gltf_note(k->g, "KHR_materials_iridescence", "glass shows no film, only what is opaque");
+}
+
 static void make_material(const struct maker *k)
 {
     const struct sr_gltf_look *m = k->m;
@@ -366,6 +392,7 @@ static void make_material(const struct maker *k)
         specular_colour = textured_colour(k, "specular_color", tint, &m->specular_colour_texture);
         specular = textured(k, "specular", fmin(m->specular * most, 2), &m->specular_texture, "a");
     }
+    struct film film = film_of(k);
     struct number transmission = textured(k, "transmission", m->transmission, &m->transmission_texture, "r");
     struct number coat = textured(k, "clearcoat", m->coat, &m->coat_texture, "r");
     struct number coat_roughness = textured(k, "clearcoat_roughness", m->coat_roughness, &m->coat_roughness_texture, "g");
@@ -394,7 +421,7 @@ static void make_material(const struct maker *k)
         put(k, "transmission_weight", transmission, 0);
         put_colour(k, "transmission_color", &base);
         if (!m->is_solid)
-            sr_compose_bool(to, "thin_walled", true);
+            sr_compose_float(to, "thin_walled", 1);
     }
     if (coat.texture || coat.value > 0) {
         put(k, "coat_weight", coat, 0);
@@ -407,7 +434,7 @@ static void make_material(const struct maker *k)
         put_colour(k, "fuzz_color", &sheen);
         put(k, "fuzz_roughness", sheen_roughness, 0.5);
     }
-    sr_gltf_put_film(k->g, m);
+    put_film(k, film);
     sr_compose_material(to, k->s->name, "openpbr");
 }
 

@@ -101,3 +101,45 @@ TEST(openpbr_makes_no_light_under_any_layer)
         EXPECT(albedo_by_samples(&b, direction(theta, 0), 1, 4000) < (double)b.model->largest_albedo + 0.01);
     }
 }
+
+TEST(openpbr_thin_wall_is_a_pane)
+{
+    struct sr_bsdf b = specimen("openpbr", "transmission_weight", 1.0, "thin_walled", 1.0, "specular_roughness", 0.0, "transmission_color", 0.5, NULL);
+    for (int i = 0; i < 3; ++i) {
+        float c = 1 - 0.3f * (float)i, s = sqrtf(1 - c * c), cos_t = sqrtf(1 - s * s / 2.25f);
+        float rs = (c - 1.5f * cos_t) / (c + 1.5f * cos_t), rp = (1.5f * c - cos_t) / (1.5f * c + cos_t), F = (rs * rs + rp * rp) / 2;
+        for (int side = -1; side <= 1; side += 2) {
+            sr_vec3 wo = {s, 0, (float)side * c};
+            double through = 0, back = 0;
+            const int N = 20000;
+            for (int k = 0; k < N; ++k) {
+                struct sr_bsdf_sample x;
+                float u = ((float)k + 0.5f) / (float)N;
+                if (!sr_bsdf_sample(&b, wo, u, (sr_vec2){fmodf(u * 377.1f, 1), fmodf(u * 1713.7f, 1)}, SR_RADIANCE, &x))
+                    continue;
+                double weight = (double)(x.f[0] * fabsf(x.wi.z) / x.pdf) / N;
+                if (x.wi.z * wo.z < 0) {
+                    EXPECT_NEAR(sr_dot(x.wi, wo), -1, 1e-5);
+                    through += weight;
+                } else
+                    back += weight;
+            }
+            EXPECT_NEAR(through, 0.5 * (double)((1 - F) / (1 + F)), 2e-3);
+            EXPECT_NEAR(back, (double)(2 * F / (1 + F)), 4e-3);
+        }
+    }
+}
+
+/* A quarter wave of index sqrt(n) on glass of n reflects nothing; a half wave changes nothing. */
+TEST(openpbr_film_of_a_quarter_wave_takes_the_mirror_away)
+{
+    sr_vec3 w = {0, 0, 1};
+    double n = sqrt(1.5), quarter = 0.550 / (4 * n);
+    struct sr_bsdf bare = specimen("openpbr", "base_color", 0.0, "specular_roughness", 0.5, NULL);
+    struct sr_bsdf none = specimen("openpbr", "base_color", 0.0, "specular_roughness", 0.5, "thin_film_weight", 1.0, "thin_film_ior", n, "thin_film_thickness", quarter, NULL);
+    struct sr_bsdf half = specimen("openpbr", "base_color", 0.0, "specular_roughness", 0.5, "thin_film_weight", 1.0, "thin_film_ior", n, "thin_film_thickness", 2 * quarter, NULL);
+    double mirror = sr_bsdf_f(&bare, w, w, SR_RADIANCE)[0];
+    EXPECT(mirror > 0.01);
+    EXPECT_NEAR(sr_bsdf_f(&none, w, w, SR_RADIANCE)[0] / mirror, 0, 2e-3);
+    EXPECT_NEAR(sr_bsdf_f(&half, w, w, SR_RADIANCE)[0] / mirror, 1, 2e-3);
+}

@@ -608,7 +608,7 @@ TEST(gltf_tells_where_a_file_is_wrong)
     expect_error(TRIANGLE ",\"nodes\":{},\"scenes\":[{\"nodes\":[0]}]", "m.gltf: /nodes: expected a list");
     // zeros without a buffer, more than a small file may ask for
     expect_error("\"accessors\":[{\"componentType\":5126,\"count\":2000000000,\"type\":\"VEC3\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]," SHOWN,
-                 "m.gltf: /meshes/0/primitives/0: asks for more than 50343200 bytes of memory, which is too much for a file of 293 bytes");
+                 "m.gltf: /meshes/0/primitives/0: asks for more than 50336848 bytes of memory, which is too much for a file of 325 bytes");
     done();
     EXPECT_EQUAL_INT(read_text("{\"asset\":{\"version\":\"1.0\"}}"), SR_ERROR_INPUT);
     EXPECT_EQUAL_TEXT(error.text, "m.gltf: /asset: version \"1.0\" of glTF: expected 2.0");

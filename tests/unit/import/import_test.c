@@ -84,7 +84,7 @@ TEST(what_is_not_supported_says_so_and_what_is)
                  "imagemap, dots, directionmix, marble, texelmap, attribute, product");
     expect_error("WorldBegin Texture \"t\" \"float\" \"marble\"\nShape \"sphere\" \"texture alpha\" \"t\"",
                  "1:12: Texture \"marble\" is not supported yet; supported: constant, scale, mix, bilerp, checkerboard, "
-                 "imagemap, dots, directionmix, fbm, wrinkled, windy");
+                 "imagemap, dots, directionmix, fbm, wrinkled, windy, texelmap, attribute, threshold");
     expect_error("WorldBegin Texture \"t\" \"spectrum\" \"ptex\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\" " BALL,
                  "1:12: Texture \"t\": Ptex files are not read: bake it into an image over the surface's (u, v) and use \"imagemap\"");
 }
