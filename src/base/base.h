@@ -86,6 +86,9 @@ void sr_array_free(struct sr_array *array);
  * not counted. Refuses directories, and gzip that unpacks to more than max_size. Free *data with sr_free. */
 sr_status sr_file_read(const char *path, size_t max_size, char **data, size_t *size, struct sr_error *error);
 
+/* Unpacks zlib's format into exactly out_size bytes; false: it is damaged, or of another size. */
+bool sr_inflate(const void *data, size_t size, void *out, size_t out_size);
+
 /* Writes beside the final name and renames, so that a half-written file never bears it. */
 sr_status sr_file_write(const char *path, const void *data, size_t size, struct sr_error *error);
 bool sr_file_exists(const char *path);

@@ -4,10 +4,10 @@
 
 #include <string.h>
 
-extern const struct sr_medium_model sr_medium_homogeneous, sr_medium_uniform_grid, sr_medium_rgb_grid, sr_medium_cloud;
+extern const struct sr_medium_model sr_medium_homogeneous, sr_medium_uniform_grid, sr_medium_rgb_grid, sr_medium_cloud, sr_medium_nanovdb;
 
 const struct sr_medium_model *const sr_medium_models[] = {
-    &sr_medium_homogeneous, &sr_medium_uniform_grid, &sr_medium_rgb_grid, &sr_medium_cloud, NULL,
+    &sr_medium_homogeneous, &sr_medium_uniform_grid, &sr_medium_rgb_grid, &sr_medium_cloud, &sr_medium_nanovdb, NULL,
 };
 
 const struct sr_medium_model *sr_medium_model_find(const char *name)
