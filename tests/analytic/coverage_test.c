@@ -118,7 +118,7 @@ enum { SCENES = sizeof scenes / sizeof scenes[0] };
 
 static uint32_t seeds_of(double n)
 {
-    return is_slow_build() ? 24 : (uint32_t)n;
+    return (uint32_t)(is_slow_build() ? fmin(n, 12) : n);
 }
 
 TEST(intervals_of_replicates_cover_the_truth)
@@ -127,7 +127,7 @@ TEST(intervals_of_replicates_cover_the_truth)
     printf("replicates, R = 16: coverage of Student's 95 %% intervals\n  %-8s %5s %8s %9s %8s %8s %8s\n", "scene", "spp", "trials", "covered", "too low", "too high", "told/sd");
     bool is_right = true;
     for (int i = 0; i < SCENES; ++i)
-        for (int k = 0; k < 2; ++k) {
+        for (int k = 0; k < (is_slow_build() ? 1 : 2); ++k) {
             struct world w = world_of("%s", scenes[i].text);
             struct trials t = render_many(w.job, seeds_of(k ? 60 : 120), spp[k], 16);
             struct verdict v = judge(&t, NULL, sr_student_quantile(0.975, 15));
@@ -242,7 +242,7 @@ TEST(error_bars_of_ordinary_images_are_wide_enough_and_not_too_wide)
     printf("ordinary images: m +- 1.96 u\n  %-8s %5s %8s %9s %8s %8s %8s %8s\n", "scene", "spp", "trials", "covered", "too low", "too high", "rms/sd", "mean/sd");
     bool is_right = true;
     for (int i = 0; i < SCENES; ++i)
-        for (int k = 0; k < 3; ++k) {
+        for (int k = 0; k < (is_slow_build() ? 1 : 3); ++k) {
             struct world w = world_of("%s", scenes[i].text);
             struct trials t = render_many(w.job, seeds_of(k == 2 ? 40 : 120), spp[k], 0);
             struct verdict v = judge(&t, NULL, 1.96);
@@ -261,7 +261,7 @@ TEST(what_replicates_cost_is_known)
     printf("mean square error of 16 replicates over one net\n  %-8s %8s %8s %8s\n", "scene", "spp 64", "256", "1024");
     for (int i = 0; i < SCENES; ++i) {
         printf("  %-8s", scenes[i].name);
-        for (int k = 0; k < 3; ++k) {
+        for (int k = 0; k < (is_slow_build() ? 1 : 3); ++k) {
             struct world w = world_of("%s", scenes[i].text);
             struct trials one = render_many(w.job, seeds_of(16), spp[k], 0), many = render_many(w.job, seeds_of(16), spp[k], 16);
             double ratio = judge(&many, NULL, 2).variance / judge(&one, NULL, 2).variance;
