@@ -90,6 +90,25 @@ TEST(path_and_volpath_agree_on_a_ball)
     EXPECT(is_slow_build() || error < 0.02 * a.mean / sqrt(fmin(1, effort())));
 }
 
+/* The model's limit, as its page tells it: a random walk in the same medium shows 4 % less. */
+TEST(diffusion_is_a_little_brighter_than_a_random_walk)
+{
+    static const char medium[] = "\"spectrum sigma_a\" " CONSTANT("0.2") " \"spectrum sigma_s\" " CONSTANT("19.8");
+    struct estimate e[2];
+    for (int i = 0; i < 2; ++i) {
+        struct world w = world_of("Integrator \"volpath\" \"integer maxdepth\" 3000\nMakeNamedMedium \"m\" \"string type\" \"homogeneous\" %s\nWorldBegin\n"
+                                  "LightSource \"infinite\" \"spectrum L\" " CONSTANT("1") "\n%s Material %s Translate 0 0 -20 Shape \"sphere\" \"float radius\" 20\n",
+                                  medium, i ? "MediumInterface \"m\" \"\"" : "", i ? "\"dielectric\" \"float eta\" 1.33" : "\"subsurface\" \"spectrum sigma_a\" " CONSTANT("0.2") " \"spectrum sigma_s\" " CONSTANT("19.8"));
+        double theta = 0;
+        e[i] = mean_luminance(&w.job, from_above, &theta, 1024);
+        world_free(&w);
+    }
+    double ratio = e[0].mean / e[1].mean, error = ratio * hypot(e[0].error / e[0].mean, e[1].error / e[1].mean);
+    printf("  diffusion %.4f +- %.1e, walk %.4f +- %.1e, ratio %.4f +- %.1e\n", e[0].mean, e[0].error, e[1].mean, e[1].error, ratio, error);
+    EXPECT(fabs(ratio - 1.039) < 4.9 * error + 0.003);
+    EXPECT(is_slow_build() || error < 0.02 / sqrt(fmin(1, effort())));
+}
+
 /* pbrt's path tracing takes such bodies for glass, and so does ours unless told otherwise; whoever asks hears of it. */
 TEST(who_does_not_enter_bodies_says_so)
 {
