@@ -163,7 +163,7 @@ static void meet(void *user, int count, const struct sr_hit *hit, sr_vec3 d, flo
     for (uint32_t k = 0; k < (hit ? 1 : lights->infinite_count); ++k) {
         uint32_t index = hit ? hit->light : lights->infinite[k];
         struct sr_light light = lights->lights[index];
-        sr_spectrum Le = light.model->Le(light.self, hit ? &hit->point : NULL, sr_neg(d), p->w);
+        sr_spectrum Le = hit ? light.model->Le(light.self, &hit->point, sr_neg(d), p->w) : sr_light_escaping(light, last->x.p, d, p->w);
         if (!sr_spectrum_any(Le > 0.0f))
             continue;
         struct step v[SR_MAX_SCATTERINGS + 2];

@@ -106,14 +106,20 @@ bool sr_has_delta_lights(const struct sr_scene *scene)
     return false;
 }
 
-sr_spectrum sr_escape_Le(const struct sr_scene *scene, sr_vec3 w, const struct sr_wavelengths *wavelengths)
+bool sr_has_come_in(const struct sr_scene *scene, const struct sr_light_ray *r, struct sr_worker *worker)
+{
+    struct sr_light_sample outside = {.wi = sr_neg(r->w), .distance = INFINITY};
+    return SR_LIKELY(!r->has_passed) || sr_unoccluded(scene, &r->from, &outside, worker);
+}
+
+sr_spectrum sr_escape_Le(const struct sr_scene *scene, const struct sr_ray *ray, const struct sr_wavelengths *wavelengths)
 {
     const struct sr_lights *lights = sr_scene_lights(scene);
     sr_spectrum Le = SR_BLACK;
     for (uint32_t i = 0; i < lights->infinite_count; ++i) {
         struct sr_light light = lights->lights[lights->infinite[i]];
         if (!light.model->is_delta)
-            Le += light.model->Le(light.self, NULL, sr_neg(w), wavelengths);
+            Le += sr_light_escaping(light, ray->o, ray->d, wavelengths);
     }
     return Le;
 }

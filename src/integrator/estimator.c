@@ -133,15 +133,15 @@ static sr_spectrum glow(const struct walk *t, const struct sr_vertex *v, int by,
 }
 
 /* Light from outside the scene along a ray from v. */
-static sr_spectrum escape(const struct walk *t, const struct sr_vertex *v, int by, sr_vec3 d)
+static sr_spectrum escape(const struct walk *t, const struct sr_vertex *v, int by, const struct sr_ray *ray)
 {
     if (by == FROM_NOWHERE)
-        return sr_escape_Le(t->scene, d, t->w);
+        return sr_escape_Le(t->scene, ray, t->w);
     sr_spectrum L = SR_BLACK;
     for (uint32_t i = 0; i < t->lights->infinite_count; ++i) {
-        struct sr_arrival a = arrival(v, d, t->lights->infinite[i], NULL);
+        struct sr_arrival a = arrival(v, ray->d, t->lights->infinite[i], NULL);
         struct sr_light light = t->lights->lights[a.light];
-        L += light.model->Le(light.self, NULL, sr_neg(d), t->w) * weight_of(t, v, by, &a);
+        L += sr_light_escaping(light, ray->o, ray->d, t->w) * weight_of(t, v, by, &a);
     }
     return L;
 }
@@ -154,7 +154,7 @@ static sr_spectrum look(const struct walk *t, const struct sr_vertex *v, int by,
     for (int passed = 0; passed < 1000; ++passed) {
         struct sr_hit hit;
         if (!sr_trace(t->scene, &ray, &hit, t->worker))
-            return L + escape(t, v, by, d);
+            return L + escape(t, v, by, &ray);
         L += glow(t, v, by, &hit, d);
         if (hit.material)
             break;
@@ -288,7 +288,7 @@ static sr_spectrum walk(const struct walk *t, const struct sr_path_start *start,
             if (first && bounce == 0)
                 *first = is_hit ? *x : (struct sr_hit){.t = INFINITY};
             if (!is_hit)
-                return L + beta * escape(t, from, by, ray.d);
+                return L + beta * escape(t, from, by, &ray);
             L += beta * glow(t, from, by, x, ray.d);
             if (x->material && bounce == t->e->max_depth)
                 return L;

@@ -151,8 +151,11 @@ bool sr_subsurface_step(const struct sr_scene *scene, const struct sr_bssrdf *b,
 /* Lights that are delta functions: no ray meets them. */
 bool sr_has_delta_lights(const struct sr_scene *scene);
 
+/* Whether the light's ray got to its first point, where that is a portal: nothing may stand outside. */
+bool sr_has_come_in(const struct sr_scene *scene, const struct sr_light_ray *r, struct sr_worker *worker);
+
 /* Radiance of all infinite lights along an escaping ray. */
-sr_spectrum sr_escape_Le(const struct sr_scene *scene, sr_vec3 w, const struct sr_wavelengths *wavelengths);
+sr_spectrum sr_escape_Le(const struct sr_scene *scene, const struct sr_ray *ray, const struct sr_wavelengths *wavelengths);
 /* Radiance that leaves the hit toward w by its own glow; black where it is dark. */
 sr_spectrum sr_hit_Le(const struct sr_scene *scene, const struct sr_hit *hit, sr_vec3 w, const struct sr_wavelengths *wavelengths);
 

@@ -20,7 +20,7 @@ void sr_follow_particle(const struct sr_scene *scene, const struct sr_sampler *s
 {
     sr_u4 u = sr_sample4(sampler, SR_USE_LIGHT_PATH), u_place = sr_sample4(sampler, SR_USE_LIGHT_PATH + 1);
     struct sr_light_ray r;
-    if (!sr_lights_emit(sr_scene_lights(scene), u[2], (sr_vec2){u_place[0], u_place[1]}, (sr_vec2){u[0], u[1]}, w, &r))
+    if (!sr_lights_emit(sr_scene_lights(scene), u[2], (sr_vec2){u_place[0], u_place[1]}, (sr_vec2){u[0], u[1]}, w, &r) || !sr_has_come_in(scene, &r, worker))
         return;
     bool has_surface = sr_length2(r.from.n) > 0;
     sr_spectrum beta = r.L * ((has_surface ? fabsf(sr_dot(r.from.n, r.w)) : 1) / (r.pmf * r.pdf_area * r.pdf_direction));

@@ -19,7 +19,7 @@ static float weight_of_hit(const struct sr_lights *lights, const struct sr_point
 }
 
 // light from outside the scene along an escaping ray
-static sr_spectrum escaping(const struct sr_scene *scene, const struct sr_point *from, float pdf, sr_vec3 d, const struct sr_wavelengths *w)
+static sr_spectrum escaping(const struct sr_scene *scene, const struct sr_point *from, float pdf, const struct sr_ray *ray, const struct sr_wavelengths *w)
 {
     const struct sr_lights *lights = sr_scene_lights(scene);
     sr_spectrum L = SR_BLACK;
@@ -27,7 +27,7 @@ static sr_spectrum escaping(const struct sr_scene *scene, const struct sr_point 
         uint32_t index = lights->infinite[i];
         struct sr_light light = lights->lights[index];
         float density;
-        sr_spectrum Le = light.model->Le_pdf(light.self, d, w, &density);
+        sr_spectrum Le = light.model->Le_pdf(light.self, ray->o, ray->d, w, &density);
         L += isinf(pdf) ? Le : Le * weight_of_hit(lights, from, pdf, index, density);
     }
     return L;
@@ -100,7 +100,7 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
         if (!(is_seen ? sr_trace(scene, &ray, x, worker) : sr_trace_bare(scene, &ray, x, worker))) {
             if (first && bounce == 0)
                 *first = (struct sr_hit){.t = INFINITY};
-            return L + beta * escaping(scene, &from->point, pdf, ray.d, w);
+            return L + beta * escaping(scene, &from->point, pdf, &ray, w);
         }
         if (first && bounce == 0)
             *first = *x;

@@ -28,7 +28,7 @@ static sr_spectrum random_walk_L(const void *self, const struct sr_scene *scene,
         if (first && bounce == 0)
             *first = is_hit ? x : (struct sr_hit){.t = INFINITY};
         if (!is_hit)
-            return L + beta * sr_escape_Le(scene, ray.d, w);
+            return L + beta * sr_escape_Le(scene, &ray, w);
         L += beta * sr_hit_Le(scene, &x, sr_neg(ray.d), w);
         if (bounce == walk->max_depth && x.material)
             return L;

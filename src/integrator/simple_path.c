@@ -36,9 +36,10 @@ static sr_spectrum simple_path_L(const void *self, const struct sr_scene *scene,
         if (!is_hit) {
             for (uint32_t i = 0; i < lights->infinite_count; ++i) {
                 struct sr_light l = lights->lights[lights->infinite[i]];
-                bool is_sampled = l.model->pdf(l.self, &x.point, ray.d, NULL) > 0; // some can only be met
-                if (!l.model->is_delta && (count_Le || !is_sampled))
-                    L += beta * l.model->Le(l.self, NULL, sr_neg(ray.d), w);
+                float density; // some can only be met
+                sr_spectrum Le = l.model->Le_pdf(l.self, ray.o, ray.d, w, &density);
+                if (count_Le || !(density > 0))
+                    L += beta * Le;
             }
             return L;
         }

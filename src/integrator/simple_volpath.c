@@ -70,7 +70,7 @@ static sr_spectrum simple_volpath_L(const void *self, const struct sr_scene *sce
             continue;
         }
         if (!is_hit)
-            return L + beta * sr_escape_Le(scene, ray.d, w);
+            return L + beta * sr_escape_Le(scene, &ray, w);
         L += beta * sr_hit_Le(scene, &x, sr_neg(ray.d), w);
         struct sr_bsdf bsdf = {.model = NULL};
         struct sr_frame frame;

@@ -151,7 +151,8 @@ struct sr_light_path sr_light_vertices(const struct sr_walk *walk, struct sr_ver
     const struct sr_lights *lights = sr_scene_lights(walk->scene);
     sr_u4 u = sr_sample4(walk->sampler, SR_USE_LIGHT_PATH), u_place = sr_sample4(walk->sampler, SR_USE_LIGHT_PATH + 1);
     struct sr_light_ray r;
-    if (!sr_lights_emit(lights, u[2], (sr_vec2){u_place[0], u_place[1]}, (sr_vec2){u[0], u[1]}, walk->w, &r))
+    if (!sr_lights_emit(lights, u[2], (sr_vec2){u_place[0], u_place[1]}, (sr_vec2){u[0], u[1]}, walk->w, &r) ||
+        !sr_has_come_in(walk->scene, &r, walk->worker))
         return none;
     struct sr_light light = lights->lights[r.light];
     v[0].x = r.from;
@@ -190,7 +191,7 @@ sr_spectrum sr_met_at_once(const struct sr_scene *scene, const struct sr_path_st
     for (uint32_t k = 0; k < (hit ? 1 : lights->infinite_count); ++k) {
         uint32_t index = hit ? hit->light : lights->infinite[k];
         struct sr_light light = lights->lights[index];
-        sr_spectrum Le = light.model->Le(light.self, hit ? &hit->point : NULL, sr_neg(d), w);
+        sr_spectrum Le = hit ? light.model->Le(light.self, &hit->point, sr_neg(d), w) : sr_light_escaping(light, start->ray.o, d, w);
         float pdf = start->receiver ? light.model->pdf(light.self, start->receiver, d, hit ? &hit->point : NULL) : 0;
         L += pdf > 0 ? Le * sr_mis_weight(start->pdf, sr_lights_pmf(lights, start->receiver, index) * pdf) : Le;
     }

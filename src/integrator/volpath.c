@@ -69,14 +69,14 @@ static void receive(struct walk *k, const struct sr_point *x, const struct sr_me
         c->L += c->f * value * p.T * (1 / density);
 }
 
-static void receive_from_outside(const struct walk *k, const struct sr_point *from, sr_vec3 d, struct sr_carried *c)
+static void receive_from_outside(const struct walk *k, const struct sr_point *from, const struct sr_ray *ray, struct sr_carried *c)
 {
     bool has_rival = c->r[0] > 0;
     for (uint32_t i = 0; i < k->lights->infinite_count; ++i) {
         uint32_t index = k->lights->infinite[i];
         struct sr_light light = k->lights->lights[index];
         float density;
-        sr_spectrum Le = light.model->Le_pdf(light.self, d, &k->w, &density);
+        sr_spectrum Le = light.model->Le_pdf(light.self, ray->o, ray->d, &k->w, &density);
         if (has_rival && density > 0)
             density *= sr_lights_pmf(k->lights, from, index);
         c->L += sr_carried_to(c, Le, density);
@@ -193,7 +193,7 @@ static sr_spectrum walk(struct walk *k, int max_depth, const struct sr_path_star
 
         // Le(x, wo), and light from outside the scene
         if (!is_hit) {
-            receive_from_outside(k, &from, ray.d, &c);
+            receive_from_outside(k, &from, &ray, &c);
             return c.L;
         }
         if (x.light != SR_NO_LIGHT)

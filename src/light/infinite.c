@@ -11,50 +11,21 @@
  * The density is compensated for the directions that surfaces choose themselves (Karlik, Sik, Vevoda, Skrivan, Krivanek,
  * "MIS compensation", 2019): p ~ max(f - mean(f), 0); where it is 0 light still comes, found with weight 1 by the surface's
  * own choice. A uniform sky is never drawn at all, for the same reason. Estimators without such a choice must not use it. */
-#include "light/emission.h"
-
-/* What a texel radiates, scale times sigmoid times white, and how densely it is drawn: in one place, for one look-up. */
-struct cell {
-    struct sr_sigmoid sigmoid;
-    float scale;   // [1]
-    float density; // [1] over the square
-};
+#include "light/infinite.h"
 
 enum { MOST_CELLS = 1 << 22 }; // 80 MiB
 
-struct infinite {
-    struct sr_light_common common;
-    struct sr_spd L;
-    float scale, illuminance; // [1] [lx]
-    const char *filename;
-    // derived
-    float factor;                     // of the texels' illuminant spectra
-    const struct sr_table *white;     // of those
-    const struct cell *cells;         // one a texel; NULL: too many
-    struct sr_piecewise2 density;     // over the square
-    float to_light[3][3];             // world to light
-    sr_vec3 columns[3];               // light to world
-    float determinant;                // of to_light: a transform that is no rotation squeezes solid angles
-    bool is_rotation;                 // or a mirror
-    float luminance, choice;          // [cd/m^2] mean over the sphere
-    sr_vec3 centre;                   // of the scene's sphere [m]
-    float radius;                     // [m]
-};
-
-static const struct sr_param params[] = {
-    {SR_PARAM_ILLUMINANT, "L", "cd/m^2", 0, INFINITY, NAN, offsetof(struct infinite, L), "radiance; only its shape counts, rgb its brightness, too"},
-    {SR_PARAM_FLOAT, "scale", "1", 0, INFINITY, 1, offsetof(struct infinite, scale), "factor"},
-    {SR_PARAM_FLOAT, "illuminance", "lx", -INFINITY, INFINITY, NAN, offsetof(struct infinite, illuminance), "of a surface that faces the light's +z, if above 0"},
-    {SR_PARAM_FILE, "filename", "1", 0, 0, 0, offsetof(struct infinite, filename), "square image: equal-area octahedral map"},
+const struct sr_param sr_infinite_params[] = {
+    {SR_PARAM_ILLUMINANT, "L", "cd/m^2", 0, INFINITY, NAN, offsetof(struct sr_infinite, L), "radiance; only its shape counts, rgb its brightness, too"},
+    {SR_PARAM_FLOAT, "scale", "1", 0, INFINITY, 1, offsetof(struct sr_infinite, scale), "factor"},
+    {SR_PARAM_FLOAT, "illuminance", "lx", -INFINITY, INFINITY, NAN, offsetof(struct sr_infinite, illuminance), "of a surface that faces the light's +z, if above 0"},
+    {SR_PARAM_FILE, "filename", "1", 0, 0, 0, offsetof(struct sr_infinite, filename), "image: square, an equal-area octahedral map, or 2 x 1, latitude and longitude"},
+    {SR_PARAM_POINT3S, "portal", "m", -INFINITY, INFINITY, NAN, offsetof(struct sr_infinite, portal),
+     "corners in the world of a rectangle through which alone the light comes: the side of (p3 - p0) x (p1 - p0) is outside"},
     {.name = NULL},
 };
 
-static bool is_image(const struct infinite *m)
-{
-    return m->common.texels.width > 0;
-}
-
-static void set_directions(struct infinite *m)
+static void set_directions(struct sr_infinite *m)
 {
     const struct sr_transform *t = &m->common.light_to_world;
     const float(*a)[3] = (const float(*)[3])m->to_light;
@@ -87,7 +58,7 @@ static double upper_illuminance(const struct sr_texels *t)
     return sum * 4 * (double)SR_PI / ((double)t->width * t->height);
 }
 
-static struct cell cell_of(const struct infinite *m, size_t i)
+static struct cell cell_of(const struct sr_infinite *m, size_t i)
 {
     const struct sr_texels *t = &m->common.texels;
     struct sr_spd s = sr_spd_from_rgb_illuminant(t->space, sr_light_texel(t, (uint32_t)(i % t->width), (uint32_t)(i / t->width)));
@@ -95,7 +66,7 @@ static struct cell cell_of(const struct infinite *m, size_t i)
     return (struct cell){s.sigmoid, s.scale * m->factor, sr_piecewise2_pdf(&m->density, centre)};
 }
 
-static sr_status build_cells(struct infinite *m, struct sr_arena *arena, struct sr_error *error)
+static sr_status build_cells(struct sr_infinite *m, struct sr_arena *arena, struct sr_error *error)
 {
     const struct sr_texels *t = &m->common.texels;
     size_t n = (size_t)t->width * t->height;
@@ -110,7 +81,7 @@ static sr_status build_cells(struct infinite *m, struct sr_arena *arena, struct 
     return SR_OK;
 }
 
-static sr_status build_density(struct infinite *m, struct sr_arena *arena, struct sr_error *error)
+static sr_status build_density(struct sr_infinite *m, struct sr_arena *arena, struct sr_error *error)
 {
     const struct sr_texels *t = &m->common.texels;
     size_t n = (size_t)t->width * t->height;
@@ -135,12 +106,12 @@ static sr_status build_density(struct infinite *m, struct sr_arena *arena, struc
     return is_built ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "no memory for the density of %s", m->filename);
 }
 
-static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *error)
+sr_status sr_infinite_prepare(void *self, struct sr_arena *arena, struct sr_error *error)
 {
-    struct infinite *m = self;
+    struct sr_infinite *m = self;
     const struct sr_texels *t = &m->common.texels;
     set_directions(m);
-    if (!is_image(m)) {
+    if (!sr_infinite_is_image(m)) {
         if (sr_light_set_brightness(&m->L, m->common.space, m->common.is_absolute, m->scale, m->illuminance * SR_INV_PI, error))
             return error->status;
         m->luminance = (float)sr_spd_luminous_integral(&m->L);
@@ -167,13 +138,13 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
 
 static void place(void *self, sr_vec3 scene_centre, float scene_radius)
 {
-    struct infinite *m = self;
+    struct sr_infinite *m = self;
     m->centre = scene_centre;
     m->radius = scene_radius;
 }
 
 // unit direction in the world to the square; *jacobian: solid angle of the image over that of the world
-static sr_vec2 square(const struct infinite *m, sr_vec3 wi, float *jacobian)
+static sr_vec2 square(const struct sr_infinite *m, sr_vec3 wi, float *jacobian)
 {
     const float(*a)[3] = (const float(*)[3])m->to_light;
     sr_vec3 d = {a[0][0] * wi.x + a[0][1] * wi.y + a[0][2] * wi.z, a[1][0] * wi.x + a[1][1] * wi.y + a[1][2] * wi.z,
@@ -192,34 +163,46 @@ static inline size_t texel_index(float u, uint32_t n)
     return i > 0 ? (size_t)sr_min(i, (float)(n - 1)) : 0;
 }
 
-static inline struct cell look_up(const struct infinite *m, sr_vec2 p)
+static inline struct cell look_up(const struct sr_infinite *m, sr_vec2 p)
 {
     const struct sr_texels *t = &m->common.texels;
     size_t i = texel_index(p.y, t->height) * t->width + texel_index(p.x, t->width);
     return m->cells ? m->cells[i] : cell_of(m, i);
 }
 
-static inline sr_spectrum cell_Le(const struct infinite *m, struct cell c, const struct sr_wavelengths *w)
+static inline sr_spectrum cell_Le(const struct sr_infinite *m, struct cell c, const struct sr_wavelengths *w)
 {
     struct sr_spd s = {.kind = SR_SPD_ILLUMINANT, .scale = c.scale, .sigmoid = c.sigmoid, .table = m->white};
     return sr_spd_along(&s, w);
 }
 
+sr_spectrum sr_infinite_Le(const struct sr_infinite *m, sr_vec3 wi, const struct sr_wavelengths *w)
+{
+    if (!sr_infinite_is_image(m))
+        return sr_spd_along(&m->L, w);
+    float jacobian;
+    return cell_Le(m, look_up(m, square(m, wi, &jacobian)), w);
+}
+
+struct sr_rgb sr_infinite_texel(const struct sr_infinite *m, sr_vec3 wi)
+{
+    const struct sr_texels *t = &m->common.texels;
+    float jacobian;
+    sr_vec2 p = square(m, wi, &jacobian);
+    return sr_light_texel(t, (uint32_t)texel_index(p.x, t->width), (uint32_t)texel_index(p.y, t->height));
+}
+
 static sr_spectrum Le(const void *self, const struct sr_point *there, sr_vec3 w, const struct sr_wavelengths *wavelengths)
 {
     (void)there;
-    const struct infinite *m = self;
-    if (!is_image(m))
-        return sr_spd_along(&m->L, wavelengths);
-    float jacobian;
-    return cell_Le(m, look_up(m, square(m, sr_neg(w), &jacobian)), wavelengths);
+    return sr_infinite_Le(self, sr_neg(w), wavelengths);
 }
 
 static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
 {
     (void)reference;
-    const struct infinite *m = self;
-    if (!is_image(m))
+    const struct sr_infinite *m = self;
+    if (!sr_infinite_is_image(m))
         return false;
     float pdf;
     sr_vec2 p = sr_piecewise2_sample(&m->density, u, &pdf);
@@ -241,19 +224,20 @@ static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u
 static float pdf(const void *self, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there)
 {
     (void)reference, (void)there;
-    const struct infinite *m = self;
-    if (!is_image(m))
+    const struct sr_infinite *m = self;
+    if (!sr_infinite_is_image(m))
         return 0;
     float jacobian;
     sr_vec2 p = square(m, wi, &jacobian);
     return sr_piecewise2_pdf(&m->density, p) * jacobian / (4 * SR_PI);
 }
 
-static sr_spectrum Le_pdf(const void *self, sr_vec3 wi, const struct sr_wavelengths *w, float *density)
+static sr_spectrum Le_pdf(const void *self, sr_vec3 from, sr_vec3 wi, const struct sr_wavelengths *w, float *density)
 {
-    const struct infinite *m = self;
+    (void)from;
+    const struct sr_infinite *m = self;
     *density = 0;
-    if (!is_image(m))
+    if (!sr_infinite_is_image(m))
         return sr_spd_along(&m->L, w);
     float jacobian;
     struct cell c = look_up(m, square(m, wi, &jacobian));
@@ -263,9 +247,9 @@ static sr_spectrum Le_pdf(const void *self, sr_vec3 wi, const struct sr_waveleng
 
 /* Half of the rays leave as `sample` draws them, half evenly: no ray carries more than twice the mean flux, and none that
  * carries anything has no chance. */
-static float emit_density(const struct infinite *m, sr_vec3 wi)
+static float emit_density(const struct sr_infinite *m, sr_vec3 wi)
 {
-    if (!is_image(m))
+    if (!sr_infinite_is_image(m))
         return SR_INV_PI / 4;
     float jacobian;
     sr_vec2 p = square(m, wi, &jacobian);
@@ -274,21 +258,21 @@ static float emit_density(const struct infinite *m, sr_vec3 wi)
 
 static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w, struct sr_light_ray *ray)
 {
-    const struct infinite *m = self;
+    const struct sr_infinite *m = self;
     if (!(m->radius > 0))
         return false;
     sr_vec2 p = u_direction;
     bool is_even = p.x < 0.5f;
     p.x = sr_min(is_even ? 2 * p.x : 2 * p.x - 1, SR_ONE_MINUS_EPSILON);
     float unused;
-    if (is_image(m) && !is_even)
+    if (sr_infinite_is_image(m) && !is_even)
         p = sr_piecewise2_sample(&m->density, p, &unused);
-    sr_vec3 d = sr_equal_area_square_to_sphere(is_image(m) ? p : u_direction);
+    sr_vec3 d = sr_equal_area_square_to_sphere(sr_infinite_is_image(m) ? p : u_direction);
     sr_vec3 wi = d;
-    if (is_image(m))
+    if (sr_infinite_is_image(m))
         wi = sr_normalize(sr_add(sr_add(sr_scale(d.x, m->columns[0]), sr_scale(d.y, m->columns[1])), sr_scale(d.z, m->columns[2])));
     *ray = (struct sr_light_ray){.from = {.p = sr_light_outside(m->centre, m->radius, wi, u_place)}, .w = sr_neg(wi),
-                                 .L = is_image(m) ? cell_Le(m, look_up(m, p), w) : sr_spd_along(&m->L, w), .pdf_area = SR_INV_PI / sr_sqr(m->radius),
+                                 .L = sr_infinite_is_image(m) ? cell_Le(m, look_up(m, p), w) : sr_spd_along(&m->L, w), .pdf_area = SR_INV_PI / sr_sqr(m->radius),
                                  .pdf_direction = emit_density(m, wi)};
     return ray->pdf_direction > 0 && !sr_spectrum_is_black(ray->L);
 }
@@ -296,7 +280,7 @@ static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const s
 static void emit_pdf(const void *self, sr_vec3 n, sr_vec3 w, float *pdf_area, float *pdf_direction)
 {
     (void)n;
-    const struct infinite *m = self;
+    const struct sr_infinite *m = self;
     *pdf_area = m->radius > 0 ? SR_INV_PI / sr_sqr(m->radius) : 0;
     *pdf_direction = emit_density(m, sr_neg(w));
 }
@@ -304,26 +288,26 @@ static void emit_pdf(const void *self, sr_vec3 n, sr_vec3 w, float *pdf_area, fl
 // of what enters the scene's sphere, whether it is drawn by receivers or not
 static float emit_weight(const void *self)
 {
-    const struct infinite *m = self;
-    return 4 * SR_PI * SR_PI * sr_sqr(m->radius) * (is_image(m) ? sr_max(m->luminance, m->choice) : sr_light_choice_weight(&m->L));
+    const struct sr_infinite *m = self;
+    return 4 * SR_PI * SR_PI * sr_sqr(m->radius) * (sr_infinite_is_image(m) ? sr_max(m->luminance, m->choice) : sr_light_choice_weight(&m->L));
 }
 
 static float power(const void *self)
 {
-    const struct infinite *m = self;
-    return is_image(m) ? 4 * SR_PI * SR_PI * m->radius * m->radius * m->luminance : 0;
+    const struct sr_infinite *m = self;
+    return sr_infinite_is_image(m) ? 4 * SR_PI * SR_PI * m->radius * m->radius * m->luminance : 0;
 }
 
 static bool bounds(const void *self, struct sr_light_bounds *b)
 {
-    const struct infinite *m = self;
+    const struct sr_infinite *m = self;
     float radius = m->radius > 0 ? m->radius : 1; // a scene without extent is lit, too
-    *b = (struct sr_light_bounds){.power = is_image(m) ? 4 * SR_PI * SR_PI * radius * radius * sr_max(m->luminance, m->choice) : 0};
+    *b = (struct sr_light_bounds){.power = sr_infinite_is_image(m) ? 4 * SR_PI * SR_PI * radius * radius * sr_max(m->luminance, m->choice) : 0};
     return false;
 }
 
 const struct sr_light_model sr_light_infinite = {
-    .name = "infinite", .params = params, .size = sizeof(struct infinite), .is_infinite = true, .wants_octahedral_map = true, .prepare = prepare,
+    .name = "infinite", .params = sr_infinite_params, .size = sizeof(struct sr_infinite), .is_infinite = true, .wants_octahedral_map = true, .prepare = sr_infinite_prepare,
     .place = place, .sample = sample, .pdf = pdf, .Le = Le, .Le_pdf = Le_pdf, .bounds = bounds, .emit = emit,
     .emit_pdf = emit_pdf, .emit_weight = emit_weight, .power = power,
 };

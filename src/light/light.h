@@ -37,6 +37,7 @@ struct sr_light_ray {
     sr_spectrum L;        // radiance; of points the intensity, of distant lights the irradiance across w
     float pdf_area;       // [1/m^2]; points: 1; from outside: across w, on the disk that the scene's sphere shows
     float pdf_direction;  // [1/sr]; distant lights: 1
+    bool has_passed;      // it has come through a portal: only if nothing is on its way from outside to `from` it may go on
     float pmf;            // [1] of this light among all; sr_lights_emit fills it and the next
     uint32_t light;
 };
@@ -70,8 +71,9 @@ struct sr_light_model {
     float (*pdf)(const void *self, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there);
     /* Radiance leaving `there` toward w (area lights), or arriving along a ray that escapes in direction -w (infinite, there NULL). */
     sr_spectrum (*Le)(const void *self, const struct sr_point *there, sr_vec3 w, const struct sr_wavelengths *wavelengths);
-    /* Infinite lights: Le along a ray that escapes toward wi, and pdf, at once; NULL: it has no Le. */
-    sr_spectrum (*Le_pdf)(const void *self, sr_vec3 wi, const struct sr_wavelengths *wavelengths, float *pdf);
+    /* Infinite lights: Le along a ray that escapes toward wi, and pdf, at once, both as seen from a place; NULL: it has no Le. (What
+     * shines through a portal is not seen from everywhere; Le above does not ask.) */
+    sr_spectrum (*Le_pdf)(const void *self, sr_vec3 from, sr_vec3 wi, const struct sr_wavelengths *wavelengths, float *pdf);
     bool (*bounds)(const void *self, struct sr_light_bounds *bounds); // false: infinite, power alone is set
     /* A ray that leaves it, drawn in nearly the proportion of what it emits (time is the caller's), and the densities with which
      * it draws. n: of the light's surface there. */
@@ -82,6 +84,7 @@ struct sr_light_model {
                                       // sphere, and 0 for a uniform sky, which is never chosen
 };
 extern const struct sr_light_model *const sr_light_models[]; // ends with NULL
+extern const struct sr_light_model sr_light_infinite, sr_light_portal; // the second where "portal" is given: one table
 const struct sr_light_model *sr_light_model_find(const char *name);
 
 /* The area light of one primitive: kept small, there may be a million. */
@@ -151,6 +154,13 @@ static inline bool sr_light_draw(struct sr_light light, const struct sr_point *r
 static inline float sr_light_density(struct sr_light light, const struct sr_point *reference, sr_vec3 wi, const struct sr_point *there)
 {
     return light.model->pdf(light.self, reference, wi, there);
+}
+
+/* What comes from an infinite light along a ray that has escaped. */
+static inline sr_spectrum sr_light_escaping(struct sr_light light, sr_vec3 from, sr_vec3 wi, const struct sr_wavelengths *w)
+{
+    float unused;
+    return light.model->Le_pdf(light.self, from, wi, w, &unused);
 }
 
 /* ---- choosing among many ---- */

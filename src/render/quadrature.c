@@ -66,7 +66,7 @@ static sr_spectrum arriving(struct task *t, sr_vec2 u)
         if (!(pdf > 0))
             return SR_BLACK;
         s = (struct sr_light_sample){.wi = sr_to_world(&t->frame, wi), .distance = INFINITY, .pdf = pdf};
-        s.L = t->light.model->Le(t->light.self, NULL, sr_neg(s.wi), &t->w);
+        s.L = sr_light_escaping(t->light, t->x.p, s.wi, &t->w);
     } else {
         if (!sr_light_draw(t->light, &t->x, u, &t->w, &s) || !(s.pdf > 0))
             return SR_BLACK;
@@ -159,7 +159,7 @@ static const char *look(struct task *t, const struct sr_meter_place *at, struct 
     for (int passed = 0; passed < 1000; ++passed) {
         struct sr_hit hit;
         if (!sr_trace(t->job->scene, &ray, &hit, &t->worker)) {
-            add_exact(sum, sr_escape_Le(t->job->scene, d, &t->w));
+            add_exact(sum, sr_escape_Le(t->job->scene, &ray, &t->w));
             return NULL;
         }
         add_exact(sum, sr_hit_Le(t->job->scene, &hit, sr_neg(d), &t->w));
@@ -294,6 +294,8 @@ static const char *refusal(const struct measuring *m, int32_t max_depth, struct 
     const struct sr_lights *lights = sr_scene_lights(m->job->scene);
     for (uint32_t i = 0; i < lights->count; ++i) {
         struct sr_light light = lights->lights[i];
+        if (light.model == &sr_light_portal)
+            return "the sky shines through a portal, whose edges no rule knows";
         if (light.model->is_infinite && !light.model->is_delta && ((const struct sr_light_common *)light.self)->texels.width)
             return "the sky is an image, whose small bright parts no rule would be sure to meet";
     }

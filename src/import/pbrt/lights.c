@@ -75,6 +75,8 @@ static sr_status add_light(struct sr_pbrt_build *b, const struct sr_pbrt_light *
 {
     const struct sr_pbrt_entity *e = &light->entity;
     const struct sr_light_model *m = sr_light_model_find(e->model);
+    if (m == &sr_light_infinite && sr_pbrt_find(&e->params, "portal"))
+        m = &sr_light_portal;
     if (!m || m == &sr_light_area) {
         const char *names[32];
         size_t n = 0;
