@@ -122,9 +122,9 @@ static int print_image_json(const char *path, const struct sr_image *image)
 
 static int run(int argc, char **argv)
 {
-    static const char *const scenes[] = {".pbrt", ".pbrt.gz", NULL};
-    static const char *const later[] = {".gltf", ".glb", ".obj", ".usd", ".usda", ".usdc", ".usdz", ".blend", ".fbx",
-                                        ".dae",  ".xml", ".abc", ".stl", ".rad",  ".mtlx", NULL};
+    static const char *const scenes[] = {".pbrt", ".pbrt.gz", ".gltf", ".glb", ".obj", ".stl", ".ply", NULL};
+    static const char *const later[] = {".usd", ".usda", ".usdc", ".usdz", ".blend", ".fbx",
+                                        ".dae",  ".xml", ".abc", ".rad",  ".mtlx", NULL};
     struct info_arguments a = {0};
     int option, index = 0;
     while ((option = command_next_option(argc, argv, ":o:q", long_options, &index)) != -1)
@@ -160,7 +160,7 @@ static int run(int argc, char **argv)
     struct sr_image *image = NULL;
     if (sr_file_exists(a.path) && has_ending_of(a.path, later))
         sr_fail(&error, SR_ERROR_INPUT,
-                "%s: this kind of file is not supported yet; scenes are .pbrt or .pbrt.gz, luminaires .ies or .ldt, pictures EXR, "
+                "%s: this kind of file is not supported yet; scenes are .pbrt or .pbrt.gz, .gltf, .glb, .obj, .stl and .ply, luminaires .ies or .ldt, pictures EXR, "
                 "PNG, JPEG, PFM, HDR, TGA",
                 a.path);
     else if (sr_file_exists(a.path) && (sr_path_has_ending(a.path, ".ply") || sr_path_has_ending(a.path, ".ply.gz")))

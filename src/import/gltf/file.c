@@ -139,6 +139,8 @@ static void open_buffers(struct sr_gltf *g)
         if (b.size < length)
             sr_gltf_fail(g, &at, "byteLength is %llu, but %s has %zu bytes", (unsigned long long)length,
                          uri && !sr_gltf_is_data_uri(uri) ? uri : "the buffer", b.size);
+        if (!sr_gltf_is_well(g))
+            return;
         b.size = length;
         g->buffers[i] = b;
         g->c.d->hash = sr_pbrt_hash(g->c.d->hash, b.data, b.size);
