@@ -116,7 +116,8 @@ const char *sr_strategy_text(int i);
 /* ---- particles of light ---- */
 
 enum sr_particle_event { SR_PARTICLE_EMITTED, SR_PARTICLE_ABSORBED, SR_PARTICLE_ESCAPED, SR_PARTICLE_GIVEN_UP };
-/* Told of each event: flux [lm for each wavelength, as paths have it], the direction of travel, and where it is absorbed; what
+/* Told of each event: flux [lm for each wavelength, as paths have it], the direction of travel, and where it is absorbed (in media: a
+ * hit of no object and no material); what
  * light from outside emits is what enters the scene's sphere. w as it is then: dispersion ends wavelengths on the way. */
 struct sr_particle_watch {
     void (*event)(void *user, enum sr_particle_event event, const struct sr_hit *hit, sr_vec3 d, sr_spectrum flux, const struct sr_wavelengths *w);

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Where the light of a scene goes: every lumen and watt that is emitted is absorbed somewhere, or leaves.
  *
- *     Phi_emitted = SUM over materials Phi_absorbed + Phi_escaped + Phi_given_up          [lm], [W]
+ *     Phi_emitted = SUM over materials and media Phi_absorbed + Phi_escaped + Phi_given_up          [lm], [W]
  *
  * by particles from the lights (integrator.h); what is left of the difference is the closure, with its own uncertainty from
  * the same replicates. Light from outside counts as it enters the scene's sphere. What a BSDF loses that it should have kept
  * counts as absorbed by its material. */
 #include "render/render.h"
 
-enum { DEFAULT_REPLICATES = 16, DEFAULT_SAMPLES = 65536, EMITTED = 0, ABSORBED, ESCAPED, GIVEN_UP, CLOSURE, PARTS };
+enum { DEFAULT_REPLICATES = 16, DEFAULT_SAMPLES = 65536, EMITTED = 0, ABSORBED, ESCAPED, GIVEN_UP, CLOSURE, IN_MEDIA, PARTS };
 
 /* Sums of one replicate: the parts, then materials, then objects; each in two systems. */
 struct replicate {
@@ -39,6 +39,8 @@ static void count(void *user, enum sr_particle_event event, const struct sr_hit 
     for (int k = 0; k < 2; ++k) {
         r->sums[part][k] += value[k];
         r->sums[CLOSURE][k] += part == EMITTED ? value[k] : -value[k];
+        if (part == ABSORBED && !hit->object)
+            r->sums[IN_MEDIA][k] += value[k];
         if (part == ABSORBED && hit->material_number && hit->material_number <= r->b->materials)
             r->sums[PARTS + hit->material_number - 1][k] += value[k];
         if (part == ABSORBED && hit->object && hit->object <= r->b->objects)
@@ -100,6 +102,7 @@ sr_status sr_measure_balance(const struct sr_render_job *job, const struct sr_me
     read_part(&b, R, ESCAPED, out->escaped);
     read_part(&b, R, GIVEN_UP, out->given_up);
     read_part(&b, R, CLOSURE, out->closure);
+    read_part(&b, R, IN_MEDIA, out->in_media);
     for (uint32_t i = 0; i < b.materials; ++i)
         read_part(&b, R, PARTS + i, out->by_material[i]);
     for (uint32_t i = 0; i < b.objects; ++i)

@@ -115,6 +115,7 @@ sr_status sr_measure_map(const struct sr_render_job *job, const struct sr_meter 
 /* Where the light of a scene goes, by particles from its lights; [0] photopic [lm], [1] radiometric [W]. */
 struct sr_balance {
     struct sr_quantity emitted[2], absorbed[2], escaped[2];
+    struct sr_quantity in_media[2]; // a part of absorbed
     struct sr_quantity given_up[2]; // still under way after 100000 scatterings
     struct sr_quantity closure[2];  // emitted less all others
     uint32_t materials, objects;

@@ -51,6 +51,22 @@ TEST(bytes_of_replicates_do_not_depend_on_threads_or_tiles)
     expect_one_hash(NULL, 4);
 }
 
+TEST(bytes_of_media_do_not_depend_on_threads_or_tiles)
+{
+    struct sr_import_result scene;
+    struct sr_error error = {0};
+    struct sr_import_options options = {.width = 64, .height = 40, .spp = 8};
+    if (!import_scene(test_reference_file("scenes/spotfog/spotfog.ref.pbrt"), &options, &scene, &error))
+        test_fail(__FILE__, __LINE__, "%s", error.text);
+    struct sr_render_job job = job_of(&scene);
+    EXPECT_EQUAL_TEXT(job.integrator.model->name, "volpath");
+    uint64_t one = hash_of(job, 1, 16);
+    EXPECT(hash_of(job, 2, 5) == one && hash_of(job, 3, 64) == one && hash_of(job, 7, 8) == one);
+    job.seed += 1;
+    EXPECT(hash_of(job, 2, 16) != one);
+    sr_import_result_free(&scene);
+}
+
 TEST(bytes_of_splats_do_not_depend_on_threads_or_tiles)
 {
     expect_one_hash("lightpath", 0);

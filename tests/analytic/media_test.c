@@ -360,3 +360,23 @@ TEST(the_plain_twin_finds_the_same_light)
     }
     expect_same("room", e[0], e[1], 1.5e-2);
 }
+
+TEST(particles_and_paths_find_the_same_light_leaving)
+{
+    // coloured fog around a grey ball, lit from outside: what leaves, and where the rest stays
+    struct world w = world_of("Integrator \"volpath\" \"integer maxdepth\" 1000\nWorldBegin\nMakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"float g\" 0.5 "
+                              "\"spectrum sigma_a\" [300 .3 600 0.1 900 1] \"spectrum sigma_s\" [300 2 900 .2]\nLightSource \"point\" \"point3 from\" [0 0 2.6] \"float power\" 1000\n"
+                              "Material \"interface\" MediumInterface \"m\" \"\" Shape \"sphere\" \"float radius\" 2\nMediumInterface \"m\" \"m\" " GREY
+                              "Shape \"sphere\" \"float radius\" 0.4\n#@ Meter \"flux\" \"string name\" \"F\" \"string shape\" \"sphere\" \"float radius\" 3 \"string side\" \"back\"\n");
+    struct sr_measure_settings s = {.samples = (uint64_t)samples(8192) * REPLICATES, .replicates = REPLICATES};
+    struct sr_arena arena = {0};
+    struct sr_balance b;
+    struct sr_error error = {0};
+    EXPECT(sr_measure_balance(&w.job, &s, &arena, &b, &error) == SR_OK);
+    struct estimate escaped = {b.escaped[0].value, b.escaped[0].u, REPLICATES - 1}, closure = {1000 + b.closure[0].value, b.closure[0].u, REPLICATES - 1};
+    expect_same("closure", closure, (struct estimate){1000, 0, 0}, 5e-3);
+    EXPECT_NEAR(b.in_media[0].value + b.by_object[1][0].value, b.absorbed[0].value, 1e-3);
+    EXPECT(b.in_media[0].value > 20 && b.by_object[0][0].value == 0);
+    sr_arena_free(&arena);
+    expect_same("escaped", escaped, metered(&w, 8192), 5e-3);
+}

@@ -56,8 +56,8 @@ int measure_balance(const struct measure_arguments *a, const struct sr_render_jo
     }
     int code = 0;
     if (a->json) {
-        json_t *j = json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:I}", "emitted", both(b.emitted), "absorbed", both(b.absorbed), "escaped", both(b.escaped),
-                              "given_up", both(b.given_up), "closure", both(b.closure), "absorbed_by_material",
+        json_t *j = json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:I, s:I}", "emitted", both(b.emitted), "absorbed", both(b.absorbed), "escaped", both(b.escaped),
+                              "given_up", both(b.given_up), "absorbed_in_media", both(b.in_media), "closure", both(b.closure), "absorbed_by_material",
                               all_of((const struct sr_quantity(*)[2])b.by_material, b.materials), "absorbed_by_object",
                               all_of((const struct sr_quantity(*)[2])b.by_object, b.objects), "samples", (json_int_t)b.samples, "dropped_samples",
                               (json_int_t)b.dropped);
@@ -65,6 +65,8 @@ int measure_balance(const struct measure_arguments *a, const struct sr_render_jo
     } else {
         print_line(a, "emitted", b.emitted);
         print_line(a, "absorbed", b.absorbed);
+        if (sr_scene_has_media(job->scene))
+            print_line(a, "  in media", b.in_media);
         char name[32];
         for (uint32_t i = 0; i < b.materials && b.materials > 1; ++i) {
             snprintf(name, sizeof name, "  material %u", i + 1);
