@@ -6,6 +6,8 @@
  * L is scaled to the luminance `scale` [cd/m^2], or so that the whole shape gives off scale * power. With an image the
  * radiance is rgb(u, 1-v) of the image, bilinear between texel centres, times the white of its colour space; its mean over
  * (u, v) is taken as the mean over the surface. J. H. Lambert, Photometria, 1760.
+ * Of patches whose (u, v) are their own, one half of the points is drawn in proportion to the image, as M. Pharr, W. Jakob and
+ * G. Humphreys draw all of them (Physically Based Rendering, 4th ed. 2023, section 6.6), the other by solid angle or area.
  * Limits: power is exact for an image only where (u, v) maps area evenly. */
 #include "light/emission.h"
 
@@ -18,9 +20,43 @@ const struct sr_param sr_light_emission_params[] = {
     {.name = NULL},
 };
 
+/* What a cell between texel centres shines by bilinear interpolation: the tent's mean, nowhere 0 where there is light. */
+static float blurred(const struct sr_texels *t, uint32_t x, uint32_t y)
+{
+    static const float w[3] = {0.125f, 0.75f, 0.125f};
+    float sum = 0;
+    for (uint32_t j = 0; j < 3; ++j)
+        for (uint32_t i = 0; i < 3; ++i) {
+            uint32_t xx = x + i < 1 ? 0 : x + i - 1 < t->width ? x + i - 1 : t->width - 1, yy = y + j < 1 ? 0 : y + j - 1 < t->height ? y + j - 1 : t->height - 1;
+            struct sr_rgb c = sr_light_texel(t, xx, yy);
+            sum += w[i] * w[j] * (c.r + c.g + c.b);
+        }
+    return sum;
+}
+
+static sr_status build_picture(struct sr_light_emission *e, struct sr_arena *arena, struct sr_error *error)
+{
+    const struct sr_texels *t = &e->texels;
+    size_t n = (size_t)t->width * t->height;
+    float *f = sr_alloc(n * sizeof *f);
+    double sum = 0, most = 0;
+    for (size_t i = 0; f && i < n; ++i) {
+        f[i] = blurred(t, (uint32_t)(i % t->width), (uint32_t)(i / t->width));
+        sum += (double)f[i];
+        most = fmax(most, (double)f[i]);
+    }
+    bool is_built = f != NULL;
+    if (most > 1.1 * sum / (double)n) { // else drawing by solid angle alone is better
+        struct sr_piecewise2 *d = sr_arena_alloc(arena, sizeof *d);
+        is_built = is_built && d && sr_piecewise2_build(arena, f, t->width, t->height, d);
+        e->picture = d;
+    }
+    sr_free(f);
+    return is_built ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "no memory for the density of %s", e->filename);
+}
+
 sr_status sr_light_emission_prepare(struct sr_light_emission *e, float total_area, struct sr_arena *arena, struct sr_error *error)
 {
-    (void)arena;
     bool has_image = e->texels.width > 0;
     double mean = 1; // luminance over that of white
     if (has_image) {
@@ -29,6 +65,8 @@ sr_status sr_light_emission_prepare(struct sr_light_emission *e, float total_are
         if (sr_light_check_texels(&e->texels, e->filename, error))
             return error->status;
         mean = sr_light_mean_luminance(&e->texels);
+        if (build_picture(e, arena, error))
+            return error->status;
     }
     double luminance = (double)e->scale, share = 0;
     if (e->power > 0) {
@@ -113,6 +151,11 @@ struct sr_light_area sr_light_area_of(struct sr_shape shape, uint32_t primitive,
 {
     struct sr_light_area m = {.shape = shape, .primitive = primitive, .emission = emission, .is_ghost = is_ghost,
                               .area = shape.model->area(shape.self, primitive)};
+    bool has_own_uv = shape.model == &sr_shape_bilinearmesh && ((const struct sr_shape_patches *)shape.self)->uv.count == 0;
+    if (emission->picture && has_own_uv && m.area > 0) {
+        m.kind = SR_LIGHT_PICTURE;
+        m.far2 = INFINITY;
+    }
     if (emission->texels.width || !(m.area > 0)) // images want (u, v)
         return m;
     if (shape.model->flat && shape.model->flat(shape.self, primitive, &m.flat))
@@ -183,13 +226,49 @@ static inline bool is_far(const struct sr_light_area *m, sr_vec3 from)
     return m->kind != SR_LIGHT_ANY && sr_length2(sr_sub(m->centre, from)) > m->far2;
 }
 
+/* Density [1/sr] of drawing the patch's point (u, v) by the image: p(u, v) / |dp/du x dp/dv| by area. */
+static float picture_pdf(const struct sr_light_area *m, sr_vec3 from, sr_vec2 uv, struct sr_point *x)
+{
+    m->shape.model->point(m->shape.self, m->primitive, uv, x);
+    sr_vec3 d = sr_sub(x->p, from);
+    float jacobian = sr_length(sr_cross(x->dpdu, x->dpdv)), r2 = sr_length2(d), height = fabsf(sr_dot(x->n, d));
+    float pdf = sr_piecewise2_pdf(m->emission->picture, (sr_vec2){uv.x, 1 - uv.y}) * r2 * sqrtf(r2) / (jacobian * height);
+    return pdf < INFINITY ? pdf : 0;
+}
+
+/* One half of the points by the image, the other as without it; the density is the mean of both. */
+static bool draw_point(const struct sr_light_area *m, const struct sr_point *reference, sr_vec2 u, struct sr_shape_sample *s)
+{
+    const struct sr_shape_model *shape = m->shape.model;
+    if (m->kind != SR_LIGHT_PICTURE)
+        return shape->sample(m->shape.self, m->primitive, reference, u, s);
+    struct sr_point x;
+    if (u.x >= 0.5f) {
+        u.x = sr_min(2 * u.x - 1, SR_ONE_MINUS_EPSILON);
+        if (!shape->sample(m->shape.self, m->primitive, reference, u, s))
+            return false;
+        s->pdf = 0.5f * (s->pdf + picture_pdf(m, reference->p, s->uv, &x));
+        return true;
+    }
+    u.x = sr_min(2 * u.x, SR_ONE_MINUS_EPSILON);
+    float ignored;
+    sr_vec2 at = sr_piecewise2_sample(m->emission->picture, u, &ignored), uv = {at.x, 1 - at.y};
+    float pdf = picture_pdf(m, reference->p, uv, &x);
+    if (!(pdf > 0))
+        return false;
+    sr_vec3 wi = sr_normalize(sr_sub(x.p, reference->p));
+    *s = (struct sr_shape_sample){.p = x.p, .p_error = x.p_error, .n = x.n, .uv = uv,
+                                  .pdf = 0.5f * (pdf + shape->pdf(m->shape.self, m->primitive, reference, wi, &x))};
+    return true;
+}
+
 static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
 {
     const struct sr_light_area *m = self;
     if (is_far(m, reference->p))
         return m->kind == SR_LIGHT_FLAT ? sample_flat(m, reference->p, u, w, s) : sample_round(m, reference->p, u, w, s);
     struct sr_shape_sample x;
-    if (!m->shape.model->sample(m->shape.self, m->primitive, reference, u, &x) || !(x.pdf > 0) || isinf(x.pdf))
+    if (!draw_point(m, reference, u, &x) || !(x.pdf > 0) || isinf(x.pdf))
         return false;
     sr_vec3 d = sr_sub(x.p, reference->p);
     float r = sr_length(d);
@@ -209,8 +288,11 @@ static float pdf(const void *self, const struct sr_point *reference, sr_vec3 wi,
     const struct sr_light_area *m = self;
     if (m->is_ghost)
         return 0;
-    if (!is_far(m, reference->p))
-        return m->shape.model->pdf(m->shape.self, m->primitive, reference, wi, there);
+    if (!is_far(m, reference->p)) {
+        float by_shape = m->shape.model->pdf(m->shape.self, m->primitive, reference, wi, there);
+        struct sr_point x;
+        return m->kind == SR_LIGHT_PICTURE ? 0.5f * (by_shape + picture_pdf(m, reference->p, there->uv, &x)) : by_shape;
+    }
     if (m->kind == SR_LIGHT_ROUND)
         return SR_INV_PI * 0.5f / cone(m->round.radius, sr_length2(sr_sub(m->centre, reference->p)));
     sr_vec3 d = sr_sub(there->p, reference->p);

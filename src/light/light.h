@@ -95,8 +95,8 @@ struct sr_light_area {
     float area;                               // [m^2]
     bool is_ghost; // its surface is never met by rays (alpha 0 everywhere): only light sampling finds it, with weight 1
     // derived by sr_light_area_of: parallelograms and triangles are drawn by area where they look small, spheres by their cone
-    // from outside
-    enum { SR_LIGHT_ANY, SR_LIGHT_FLAT, SR_LIGHT_ROUND } kind;
+    // from outside; patches with an image half by its brightness, if (u, v) are their own
+    enum { SR_LIGHT_ANY, SR_LIGHT_FLAT, SR_LIGHT_ROUND, SR_LIGHT_PICTURE } kind;
     union {
         struct sr_shape_flat flat;
         struct sr_shape_round round;
@@ -122,6 +122,7 @@ struct sr_light_emission {
     float derived_scale;     // the same factor for the image: of an RGB value's illuminant spectrum
     float luminance;         // [cd/m^2] mean over the surface
     float choice_luminance;  // [cd/m^2] the same, never 0 for what glows at any wavelength
+    const struct sr_piecewise2 *picture; // density of the image over (u, 1 - v); NULL: none, or of one brightness
 };
 extern const struct sr_param sr_light_emission_params[];
 sr_status sr_light_emission_prepare(struct sr_light_emission *e, float total_area, struct sr_arena *arena, struct sr_error *error);

@@ -29,6 +29,8 @@ static const struct sr_param params[] = {
     {SR_PARAM_POINT2S, "uv", "1", -INFINITY, INFINITY, NAN, offsetof(B, uv), "texture coordinates"},
     {SR_PARAM_INTS, "faceIndices", "1", 0, INT32_MAX, NAN, offsetof(B, face_indices),
      "number of the face that each patch came from"},
+    {SR_PARAM_FILE, "emissionfilename", "1", 0, 0, NAN, offsetof(B, emission_filename),
+     "nothing: where an area light's image is bright, points are drawn anyway"},
     {0},
 };
 #undef B

@@ -99,6 +99,7 @@ struct sr_shape_patches {
     struct sr_slice indices; // int32, four a patch
     struct sr_slice P, N, uv, face_indices;
     bool flip_normals;
+    const char *emission_filename; // not looked at
     const uint8_t *kinds; // derived, one a patch: what it is geometrically, which chooses how it is sampled
 };
 

@@ -291,6 +291,9 @@ static sr_status find_emission(struct adder *a, const struct sr_pbrt_shape *s, c
     sr_status status = sr_pbrt_emission(b, s->area_light1, area, out);
     a->emission_of = status == SR_OK ? s->area_light1 : 0;
     a->emission = *out;
+    const struct sr_pbrt_param *p = sr_pbrt_find(&s->entity.params, "emissionfilename");
+    if (status == SR_OK && p && !(*out)->texels.width)
+        sr_pbrt_warn(b->d, p->where, "\"emissionfilename\" does not glow, here as in pbrt: \"string filename\" of AreaLightSource would");
     return status;
 }
 

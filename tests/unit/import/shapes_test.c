@@ -113,6 +113,13 @@ TEST(what_is_wrong_with_a_curve_is_told_where_it_stands)
     expect_error("WorldBegin\nShape \"loopsubdiv\" \"point3 P\" [0 0 0 1 0 0 0 1 0]\n", "\"indices\" is missing");
 }
 
+TEST(an_image_for_sampling_does_not_shine)
+{
+    const char *patch = "WorldBegin\nAreaLightSource \"diffuse\"\nShape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 1] \"string emissionfilename\" \"no.png\"\n";
+    EXPECT_EQUAL_INT(counts_of(patch).lights, 1);
+    EXPECT(strstr(notes, "shapes.pbrt:3:") && strstr(notes, "does not glow"));
+}
+
 TEST(curves_do_not_shine)
 {
     struct sr_scene_counts c = counts_of("WorldBegin\nAreaLightSource \"diffuse\"\n" STRAND "\n" STRAND);
