@@ -7,9 +7,9 @@
 #include <unistd.h>
 
 static const char help[] =
-    "Usage: steradian render SCENE.pbrt [-o OUT.exr] [OPTIONS]\n"
+    "Usage: steradian render SCENE [-o OUT.exr] [OPTIONS]\n"
     "\n"
-    "Renders a pbrt-v4 scene ('-': standard input). Without -o the file's own name for the picture is used.\n"
+    "Renders a scene, pbrt-v4 ('-': standard input), .gltf or .glb. Without -o the file's own name for the picture is used.\n"
     "An .exr holds the picture, its standard error, and auxiliary channels as float32; .png is tone-mapped.\n"
     "\n"
     "  -o, --outfile FILE     .exr, .png, .pfm or .hdr; may be given several times\n"
@@ -35,6 +35,8 @@ static const char help[] =
     "      --write-partial S  write the output every S seconds while rendering\n"
     "      --tile N           side of a work tile [pixel] (default: 16 or less; the bytes do not depend on it)\n"
     "      --disable-pixel-jitter, --disable-wavelength-jitter\n"
+    "      --camera NAME      (glTF) the camera of this name, or number from 1; default: the first\n"
+    "      --variant NAME     (glTF) the variant of materials of this name, or number from 1; default: none\n"
     "      --quick            a quarter of the size and of the samples\n"
     "      --pixel X,Y --sample K [--replicate R]   one sample alone, printed: what made this pixel?\n"
     "      --irradiance PX,PY,PZ,NX,NY,NZ  also measure E at this point [m] with this normal (may be repeated)\n"
@@ -51,6 +53,7 @@ static const char help[] =
     "Examples:\n"
     "  steradian render scenes/cornell-box.pbrt -o cornell.exr -o cornell.png\n"
     "  steradian render scene.pbrt -o out.pfm --spp 256 --seed 2 --quiet\n"
+    "  steradian render model.glb --camera 2 -o model.png\n"
     "  zcat scene.pbrt.gz | steradian render - -o out.exr --json\n";
 
 /* ---- one sample alone ---- */

@@ -34,6 +34,8 @@ enum {
     OPT_ADAPTIVE,
     OPT_ERROR,
     OPT_TIME,
+    OPT_CAMERA,
+    OPT_VARIANT,
 };
 
 static const struct option long_options[] = {
@@ -58,6 +60,8 @@ static const struct option long_options[] = {
     {"disable-pixel-jitter", no_argument, NULL, OPT_NO_PIXEL_JITTER},
     {"disable-wavelength-jitter", no_argument, NULL, OPT_NO_LAMBDA_JITTER},
     {"quick", no_argument, NULL, OPT_QUICK},
+    {"camera", required_argument, NULL, OPT_CAMERA},
+    {"variant", required_argument, NULL, OPT_VARIANT},
     {"pixel", required_argument, NULL, OPT_PIXEL},
     {"sample", required_argument, NULL, OPT_SAMPLE},
     {"replicate", required_argument, NULL, OPT_REPLICATE},
@@ -194,6 +198,12 @@ int render_parse(int argc, char **argv, struct render_arguments *a)
             break;
         case OPT_ADAPTIVE:
             a->adaptive.is_on = true;
+            break;
+        case OPT_CAMERA:
+            a->import.camera = optarg;
+            break;
+        case OPT_VARIANT:
+            a->import.variant = optarg;
             break;
         case OPT_QUICK:
             a->import.quick = true;
