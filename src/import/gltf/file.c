@@ -143,7 +143,8 @@ static void open_buffers(struct sr_gltf *g)
             return;
         b.size = length;
         g->buffers[i] = b;
-        g->c.d->hash = sr_pbrt_hash(g->c.d->hash, b.data, b.size);
+        if (b.size)
+            g->c.d->hash = sr_pbrt_hash(g->c.d->hash, b.data, b.size);
         bool is_another = uri && !sr_gltf_is_data_uri(uri);
         g->input_B += is_another ? b.size : 0;
         g->most_B += is_another ? 16 * (uint64_t)b.size : 0;
@@ -155,7 +156,8 @@ bool sr_gltf_open(struct sr_gltf *g, const char *bytes, size_t size)
     struct sr_gltf_buffer json = {(const uint8_t *)bytes, size};
     g->input_B = size;
     g->most_B = 16 * (uint64_t)size + ((uint64_t)48 << 20); // grows with the buffers
-    g->c.d->hash = sr_pbrt_hash(g->c.d->hash, bytes, size);
+    if (size)
+        g->c.d->hash = sr_pbrt_hash(g->c.d->hash, bytes, size);
     bool is_binary = size >= 4 && memcmp(bytes, "glTF", 4) == 0;
     if ((is_binary && !open_chunks(g, bytes, size, &json)) || !open_json(g, json))
         return false;
