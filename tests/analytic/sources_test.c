@@ -148,6 +148,15 @@ static void over_white_ground(const struct row *row)
     world_free(&w);
 }
 
+/* A uniform sky through a rectangle alone: Lambert's sum over its edges. */
+static void through_portal(const struct row *row)
+{
+    static const char *const portals[] = {"[0.2 -0.5 1  0.2 0.7 1  1.2 0.7 1  1.2 -0.5 1]", "[1.5 -0.8 0.5  1.5 -0.8 1.6  1.5 1.1 1.6  1.5 1.1 0.5]"};
+    char text[256];
+    snprintf(text, sizeof text, "LightSource \"infinite\" \"float scale\" 100 \"point3 portal\" %s\n", portals[row->a > 0]);
+    check_irradiance(row, origin, up, text, usual, 1);
+}
+
 const struct row source_rows[] = {
     {"A1", "isotropic point, 1000 lm, 2 m, normal incidence [lx]", 19.8943678865, point_normal, 0, 0},
     {"A2", "isotropic point, 1000 lm, 3 m above, 4 m aside [lx]", 1.9098593171, point_tilted, 0, 0},
@@ -171,6 +180,8 @@ const struct row source_rows[] = {
     {"B12w.70", "uniform sky, white ground, tilt 70 deg", 3.14159265359, over_white_ground, 70, 0},
     {"B14.0.2665", "cap of half angle 0.2665 deg", 6.79666559635e-5, cap, 0.2665, 0},
     {"B14.15", "cap of half angle 15 deg", 0.210446803619, cap, 15, 0},
+    {"W.above", "sky of 100 cd/m^2 through a portal above [lx]", 49.7258841994, through_portal, 0, 0},
+    {"W.aside", "sky of 100 cd/m^2 through a portal aside [lx]", 23.1915997227, through_portal, 1, 0},
     {.id = NULL},
 };
 

@@ -223,7 +223,7 @@ static double luminance(const struct sr_hit *hit, sr_vec3 w)
         struct sr_wavelengths wl = {.pdf = SR_ONE};
         for (int i = 0; i < SR_LAMBDA_COUNT; ++i)
             wl.lambda[i] = (float)(first + i);
-        sr_spectrum L = hit ? sr_hit_Le(result.scene, hit, w, &wl) : sr_escape_Le(result.scene, w, &wl);
+        sr_spectrum L = hit ? sr_hit_Le(result.scene, hit, w, &wl) : sr_escape_Le(result.scene, &(struct sr_ray){.d = w, .t_max = INFINITY}, &wl);
         for (int i = 0; i < SR_LAMBDA_COUNT && first + i <= 830; ++i)
             sum += (double)L[i] * sr_luminous_efficiency(first + i);
     }
