@@ -381,6 +381,9 @@ sr_status sr_render(const struct sr_render_job *job, struct sr_film **film, stru
     if (job->integrator.model == &sr_integrator_quadrature)
         return sr_fail(error, SR_ERROR_USAGE, "the estimator quadrature reads meters and makes no pictures: a pixel is an integral of more than two "
                                               "dimensions; use path");
+    if (job->integrator.model->splat && !job->sensor.model->connect)
+        return sr_fail(error, SR_ERROR_USAGE, "the estimator %s needs to know which ray of the sensor meets a given point, and the sensor %s cannot say; use path or bdpt",
+                       job->integrator.model->name, job->sensor.model->name);
     bool splats = job->integrator.model->splats && job->sensor.model->connect;
     if (job->adaptive.is_on && splats)
         return sr_fail(error, SR_ERROR_USAGE, "the estimator %s brings light to the whole picture at a time, and cannot spend samples on some pixels alone",

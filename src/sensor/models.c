@@ -12,6 +12,7 @@ const struct sr_sensor_model *const sr_sensor_models[] = {
     &sr_sensor_orthographic,
     &sr_sensor_spherical,
     &sr_sensor_fisheye,
+    &sr_sensor_realistic,
     NULL,
 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What looks: perspective, orthographic, spherical, fisheye: one file a kind. */
+/* What looks: perspective, orthographic, spherical, fisheye, realistic: one file a kind. */
 #ifndef SR_SENSOR_SENSOR_H
 #define SR_SENSOR_SENSOR_H
 
@@ -26,6 +26,14 @@ struct sr_sensor_view {
     float weight;   // [pixel^2/m^2] raster for each area across wi at the point
 };
 
+/* What a sensor with wants_lens is told before it is prepared; its struct begins as struct sr_sensor_with_lens. */
+struct sr_sensor_lens {
+    float diagonal;        // [m] of the picture on the film
+    const float *surfaces; // four numbers each, as in a lens file
+    uint32_t surface_count, aperture_width, aperture_height;
+    const float *aperture; // NULL, or what the square about the stop lets through, rows from below
+};
+
 /* The picture that a sensor serves, in pixels. */
 struct sr_sensor_raster {
     uint32_t width, height;
@@ -33,6 +41,7 @@ struct sr_sensor_raster {
 
 struct sr_sensor_model {
     const char *name;
+    bool wants_lens;
     const struct sr_param *params;
     size_t size;
     sr_status (*prepare)(void *self, struct sr_sensor_raster raster, const struct sr_transform *camera_to_world,
@@ -74,6 +83,10 @@ struct sr_sensor_common {
     float shutter_open, shutter_close; // [s]
     struct sr_transform camera_to_world;
     struct sr_sensor_raster raster;
+};
+struct sr_sensor_with_lens {
+    struct sr_sensor_common common;
+    struct sr_sensor_lens lens;
 };
 
 #endif

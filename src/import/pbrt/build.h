@@ -53,6 +53,7 @@ struct sr_pbrt_build {
     uint64_t hash;
     float shutter_open, shutter_close; // [s]
     bool is_borrowing; // what is bound ends before the description does: runs stay where they lie
+    float film_diagonal; // [m]
     int depth; // of textures and materials being made
 
     struct sr_array named_shapes;             // struct sr_pbrt_named_shape, in the order of the file
@@ -133,6 +134,9 @@ sr_status sr_pbrt_settle_integrator(struct sr_pbrt_build *b);
 extern const struct sr_param sr_pbrt_option_params[];
 extern const struct sr_param *const sr_pbrt_film_params, *const sr_pbrt_sampler_params, *const sr_pbrt_shape_params,
     *const sr_pbrt_ply_params, *const sr_pbrt_material_params, *const sr_pbrt_uncertainty_params;
+
+/* lens.c: the files of a camera with a lens. */
+sr_status sr_pbrt_lens(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, struct sr_sensor_lens *lens);
 
 /* motion.c: whether a transform differs at the shutter's ends; and the motion between them, or that of its inverses. */
 bool sr_pbrt_moves(const struct sr_pbrt_build *b, uint32_t transform);

@@ -24,7 +24,7 @@ static const struct sr_param film_params[] = {
     {SR_PARAM_INT, "yresolution", "pixel", 1, 1 << 20, 720, MEMBER(height), "height"},
     {SR_PARAM_FLOATS, "cropwindow", "1", 0, 1, NAN, MEMBER(crop_window), "x0 x1 y0 y1 as shares of the picture"},
     {SR_PARAM_INTS, "pixelbounds", "pixel", 0, 1 << 20, NAN, MEMBER(pixel_bounds), "x0 x1 y0 y1"},
-    {SR_PARAM_FLOAT, "diagonal", "mm", 0, INFINITY, 35, MEMBER(diagonal), "read; only a realistic camera would use it"},
+    {SR_PARAM_FLOAT, "diagonal", "mm", 0, INFINITY, 35, MEMBER(diagonal), "of the film behind a realistic camera's lens"},
     {SR_PARAM_FLOAT, "iso", "1", 0, INFINITY, 100, MEMBER(iso), "the picture times iso/100"},
     {SR_PARAM_FLOAT, "whitebalance", "K", 0, INFINITY, 0, MEMBER(white_balance),
      "correlated colour temperature; 0: none"},
@@ -108,6 +108,7 @@ static sr_status build_film(struct sr_pbrt_build *b)
         w = w > 4 ? w / 4 : 1;
         h = h > 4 ? h / 4 : 1;
     }
+    b->film_diagonal = 1e-3f * f.diagonal;
     const char *filename = f.filename && f.filename[0] ? f.filename : default_filename(b);
     if (!filename)
         return sr_pbrt_no_memory(b);
@@ -168,6 +169,8 @@ static sr_status build_sensor(struct sr_pbrt_build *b)
     sr_status status = sr_pbrt_bind(b, m->params, e, plain, self);
     if (status != SR_OK)
         return status;
+    if (m->wants_lens && sr_pbrt_lens(b, e, &((struct sr_sensor_with_lens *)self)->lens) != SR_OK)
+        return b->error->status;
     struct sr_transform camera_to_world = sr_transform_invert(&sr_pbrt_transform_of(b, e->transform)->start);
     struct sr_sensor_raster raster = {(uint32_t)b->result->film.width, (uint32_t)b->result->film.height};
     struct sr_error inner = {0};

@@ -72,8 +72,9 @@ TEST(what_is_not_supported_says_so_and_what_is)
         "'steradian brdf list'");
     expect_error("WorldBegin\nLightSource \"lantern\"",
                  "2:1: LightSource \"lantern\" is not supported yet; supported: point, spot, ies, goniometric, projection, distant, infinite");
-    expect_error("Camera \"realistic\"\nWorldBegin",
-                 "1:1: Camera \"realistic\" is not supported yet; supported: perspective, orthographic, spherical, fisheye");
+    expect_error("Camera \"pinhole\"\nWorldBegin",
+                 "1:1: Camera \"pinhole\" is not supported yet; supported: perspective, orthographic, spherical, fisheye, realistic");
+    expect_error("Camera \"realistic\"\nWorldBegin", "1:1: Camera \"realistic\": expected \"string lensfile\"");
     expect_error("Film \"gbuffer\"\nWorldBegin", "1:1: Film \"gbuffer\" is not supported yet; supported: rgb");
     expect_error("WorldBegin\nMediumInterface \"fog\" \"\"\n" BALL,
                  "2:1: there is no medium named \"fog\"");
