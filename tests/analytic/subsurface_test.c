@@ -66,6 +66,36 @@ TEST(a_half_space_returns_what_its_profile_holds)
     expect_half_space("the same, g 0.7", forward, 20, 1.33, 0.3);
 }
 
+/* On a sphere of radius R, pi d^2 of the surface lies within the chord d of any point: what comes out, all of it into the sky,
+ * is INTEGRAL_0^2R 2 pi d S_r(d) dd. Chords along tangents matter here, and cosines between them and the surface. */
+TEST(a_small_ball_returns_what_its_profile_holds_within_its_diameter)
+{
+    static const double radii[] = {0.03, 0.2, 1}; // mean free path 0.1
+    for (int i = 0; i < 6; ++i) {
+        double R = radii[i / 2], theta = i % 2 ? 60 : 0;
+        struct world w = world_of("Integrator \"path\" \"integer maxdepth\" 2 \"bool subsurface\" true\nWorldBegin\n"
+                                  "LightSource \"infinite\" \"spectrum L\" " CONSTANT("1") "\n"
+                                  "Material \"subsurface\" \"spectrum sigma_a\" " CONSTANT("0.5") " \"spectrum sigma_s\" " CONSTANT("9.5") "\n"
+                                  "Translate 0 0 %g Shape \"sphere\" \"float radius\" %g\n", -R, R);
+        struct sr_ray ray = {.o = {0, 0, 1}, .d = {0, 0, -1}, .t_max = INFINITY};
+        struct sr_hit hit;
+        struct sr_wavelengths all = {.lambda = SR_BLACK + 550, .pdf = SR_ONE};
+        struct sr_bssrdf b;
+        EXPECT(sr_raycast(w.job.scene, &ray, &hit) && sr_material_bssrdf(hit.material, &hit.point, (sr_vec3){0, 0, 1}, 0, 1, &all, &b));
+        double x[200], weights[200], e = 0;
+        sr_gauss_legendre(200, 0, sqrt(2 * R), x, weights);
+        for (int k = 0; k < 200; ++k) // d = x^2
+            e += weights[k] * 2 * x[k] * 2 * M_PI * x[k] * x[k] * (double)sr_bssrdf_profile(&b, (float)(x[k] * x[k]), NULL)[0];
+        struct estimate L = mean_luminance(&w.job, from_above, &theta, 4096);
+        double F = (double)sr_fresnel_dielectric((float)cos(theta * DEGREE), 1.33f), expected = F + (1 - F) * e, z = (L.mean - expected) / L.error;
+        bool is_right = fabs(z) < 4.9 || fabs(L.mean - expected) < 2e-4 * expected;
+        printf("  radius %.2f, %2.0f deg  %.6f +- %.1e   known %.6f  z %6.2f%s\n", R, theta, L.mean, L.error, expected, z, is_right ? "" : "  WRONG");
+        world_free(&w);
+        EXPECT(is_right);
+        EXPECT(is_slow_build() || L.error < 1e-2 * expected / sqrt(fmin(1, effort())));
+    }
+}
+
 static struct estimate ball(const char *integrator)
 {
     struct world w = world_of("%s\nWorldBegin\nLightSource \"distant\" \"point3 from\" [1 0 1] \"float illuminance\" 3\n"
