@@ -380,3 +380,46 @@ TEST(particles_and_paths_find_the_same_light_leaving)
     sr_arena_free(&arena);
     expect_same("escaped", escaped, metered(&w, 8192), 5e-3);
 }
+
+/* ---- where density varies ---- */
+
+#define GRID "MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" "
+#define SMOKE GRID "\"point3 p0\" [-.5 -.5 -.5] \"point3 p1\" [.5 .5 .5] \"integer nx\" 3 \"integer ny\" 3 \"integer nz\" 2 " \
+    "\"float density\" [0 0 0 .2 3 1 0 0 0  0 .5 0 0 9 0 0 .5 0] "
+#define LIT SKY "LightSource \"distant\" \"float illuminance\" 2 \"point3 from\" [1 2 3] \"point3 to\" [0 0 0]\n" LAMP \
+    "AttributeBegin Translate 0 1.2 0 Shape \"sphere\" \"float radius\" 0.3\nAttributeEnd\n"
+
+static struct estimate of_cube(const char *integrator, const char *medium, const char *lights, double n)
+{
+    struct world w = world_of("Integrator \"%s\" \"integer maxdepth\" 1000\nWorldBegin\n%s%sMaterial \"interface\" MediumInterface \"m\" \"\"\n%s", integrator, medium, lights,
+                              unit_cube);
+    bool is_cube = true;
+    struct estimate e = mean_luminance(&w.job, onto, &is_cube, n);
+    world_free(&w);
+    return e;
+}
+
+TEST(grids_of_one_density_are_uniform_media)
+{
+    static const char even[] = "\"rgb sigma_a\" [.2 .5 2] \"rgb sigma_s\" [4 2 1] \"float g\" 0.4 \"spectrum Le\" [300 1 900 1] \"float Lescale\" 1\n";
+    char uniform[512], grid[1024]; // between the middles of its voxels; outwards, a grid thins out
+    snprintf(uniform, sizeof uniform, "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" %s", even);
+    snprintf(grid, sizeof grid, GRID "\"point3 p0\" [-2 -2 -2] \"point3 p1\" [2 2 2] \"integer nx\" 2 \"integer ny\" 2 \"integer nz\" 2 \"float density\" [1 1 1 1 1 1 1 1] %s", even);
+    expect_same("volpath", of_cube("volpath", grid, LIT, 2048), of_cube("volpath", uniform, LIT, 2048), 1e-2);
+    expect_same("twin", of_cube("simplevolpath", grid, SKY, 2048), of_cube("volpath", uniform, SKY, 2048), 2e-2);
+}
+
+TEST(smoke_is_the_same_to_all_estimators)
+{
+    // from nothing to thick, so that most collisions are null; coloured, glowing
+    static const char smoke[] = SMOKE "\"rgb sigma_a\" [.2 .5 2] "
+                                     "\"rgb sigma_s\" [4 2 1] \"float g\" 0.4 \"spectrum Le\" [300 1 900 1]\n";
+    static const char white[] = SMOKE "\"rgb sigma_a\" [0 0 0] "
+                                     "\"rgb sigma_s\" [4 2 1] \"float g\" 0.4\n";
+    static const char fire[] = SMOKE "\"rgb sigma_a\" [1 2 3] "
+                                    "\"rgb sigma_s\" [0 0 0] \"spectrum Le\" [300 1 900 1]\n";
+    static const char lamps[] = SKY LAMP "AttributeBegin Translate 0 1.2 0 Shape \"sphere\" \"float radius\" 0.3\nAttributeEnd\n";
+    expect_same("smoke", of_cube("volpath", smoke, lamps, 2048), of_cube("simplevolpath", smoke, lamps, 4096), 1.5e-2);
+    expect_same("fire", of_cube("volpath", fire, lamps, 2048), of_cube("simplevolpath", fire, lamps, 4096), 1.5e-2);
+    expect_same("furnace", of_cube("volpath", white, SKY, 2048), (struct estimate){1, 0, 0}, 1e-2);
+}
