@@ -49,8 +49,22 @@ sr_status sr_medium_grid_check(const char *what, struct sr_slice values, uint32_
     return SR_OK;
 }
 
-void sr_medium_grid_cells(const int32_t n[3], int32_t cells[3])
+/* A cell more costs each ray a step, a cell less some collisions more: with h the size of cells, a / h against b sigma_t h, so that the
+ * best h goes as sigma_t^-1/2. The factor is from counting both in clouds of noise, 2 to 100 mean free paths thick. */
+void sr_medium_grid_cells(const int32_t n[3], float sigma_t, const struct sr_transform *medium_to_world, sr_vec3 p0, sr_vec3 p1, int32_t cells[3])
 {
-    for (int k = 0; k < 3; ++k)
-        cells[k] = n[k] < 4 ? 1 : n[k] / 4 < SR_MEDIUM_MOST_CELLS ? n[k] / 4 : SR_MEDIUM_MOST_CELLS;
+    const float(*m)[4] = medium_to_world->m;
+    for (int k = 0; k < 3; ++k) {
+        float length = sqrtf(m[0][k] * m[0][k] + m[1][k] * m[1][k] + m[2][k] * m[2][k]) * fabsf(sr_component(p1, k) - sr_component(p0, k)); // [m]
+        float best = 2.5f * sqrtf(sr_min(sigma_t * length, 1e6f)), most = sr_min((float)(n[k] / 2 + 1), SR_MEDIUM_MOST_CELLS);
+        cells[k] = (int32_t)sr_clamp(best, 1, most);
+    }
+}
+
+float sr_medium_grid_largest(struct sr_slice values)
+{
+    float largest = 0;
+    for (uint32_t i = 0; i < values.count; ++i)
+        largest = sr_max(((const float *)values.data)[i], largest);
+    return largest;
 }

@@ -93,7 +93,9 @@ static void choose_cells(const struct nanovdb *m, int32_t cells[3])
             square += m->density.to_index[i][k] * m->density.to_index[i][k];
         voxels[k] = (int32_t)fmin(fmax(sqrt(square) * (m->hi[k] - m->lo[k]), 1), 1 << 20);
     }
-    sr_medium_grid_cells(voxels, cells);
+    sr_vec3 p0 = {(float)m->lo[0], (float)m->lo[1], (float)m->lo[2]}, p1 = {(float)m->hi[0], (float)m->hi[1], (float)m->hi[2]};
+    float sigma_t = largest_density(m, zero, (double[]){1, 1, 1}) * (sr_spd_max(&m->sigma_a) + sr_spd_max(&m->sigma_s));
+    sr_medium_grid_cells(voxels, sigma_t, &m->common.medium_to_world, p0, p1, cells);
     for (;; cells[0] = cells[0] / 2 + 1, cells[1] = cells[1] / 2 + 1, cells[2] = cells[2] / 2 + 1) {
         double work = 1, there = 1;
         index_box(m, zero, (double[]){1.0 / cells[0], 1.0 / cells[1], 1.0 / cells[2]}, lo, hi);

@@ -84,7 +84,8 @@ float sr_medium_grid_at(const float *values, const int32_t n[3], sr_vec3 unit);
 void sr_medium_grid_range(const int32_t n[3], const double lo[3], const double hi[3], int32_t first[3], int32_t last[3]);
 /* n[0] n[1] n[2] values of `what` are given, finite and not below `least`. */
 sr_status sr_medium_grid_check(const char *what, struct sr_slice values, uint32_t each, const int32_t n[3], float least, struct sr_error *error);
-/* How many cells of majorants serve n voxels best. */
-void sr_medium_grid_cells(const int32_t n[3], int32_t cells[3]);
+/* How many cells of majorants serve a box of n voxels best whose largest sigma_t is that [1/m]. */
+void sr_medium_grid_cells(const int32_t n[3], float sigma_t, const struct sr_transform *medium_to_world, sr_vec3 p0, sr_vec3 p1, int32_t cells[3]);
+float sr_medium_grid_largest(struct sr_slice values); // of float, none below 0
 
 #endif

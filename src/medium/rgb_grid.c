@@ -102,7 +102,8 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     if (to_spectra(m, "sigma_a", &m->sigma_a, m->scale, &m->a, arena, error) || to_spectra(m, "sigma_s", &m->sigma_s, m->scale, &m->s, arena, error) ||
         to_spectra(m, "Le", &m->Le, m->Lescale, &m->e, arena, error))
         return error->status;
-    sr_medium_grid_cells(m->n, cells);
+    const double zero[3] = {0, 0, 0}, one[3] = {1, 1, 1};
+    sr_medium_grid_cells(m->n, largest_sigma_t(m, zero, one), &m->common.medium_to_world, m->p0, m->p1, cells);
     if (sr_medium_box_set(&m->box, &m->common.medium_to_world, m->p0, m->p1, cells, arena, error))
         return error->status;
     sr_medium_box_fill(&m->box, largest_sigma_t, m);

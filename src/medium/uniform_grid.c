@@ -98,7 +98,8 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     if (sr_medium_grid_check("density", m->density, 1, m->n, 0, error) || sr_medium_scale(&m->sigma_a, &m->sigma_s, m->scale, error) ||
         prepare_emission(m, error))
         return error->status;
-    sr_medium_grid_cells(m->n, cells);
+    float sigma_t = sr_medium_grid_largest(m->density) * (sr_spd_max(&m->sigma_a) + sr_spd_max(&m->sigma_s));
+    sr_medium_grid_cells(m->n, sigma_t, &m->common.medium_to_world, m->p0, m->p1, cells);
     if (sr_medium_box_set(&m->box, &m->common.medium_to_world, m->p0, m->p1, cells, arena, error))
         return error->status;
     sr_medium_box_fill(&m->box, largest_density, m);

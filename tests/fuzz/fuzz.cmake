@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Fuzz targets: cmake -DSTERADIAN_FUZZ=ON, target fuzz_programs. Readers are compiled anew, with sanitizers; with clang's
 # libFuzzer where the compiler has it, else with a driver of our own. `make fuzz SECONDS=60` does all of it.
-file(GLOB fuzzed_sources CONFIGURE_DEPENDS src/base/*.c src/math/*.c src/spectrum/*.c src/sample/*.c src/measured/*.c)
+file(GLOB fuzzed_sources CONFIGURE_DEPENDS src/base/*.c src/math/*.c src/spectrum/*.c src/sample/*.c src/measured/*.c src/medium/*.c)
 set(fuzz_flags -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
 set(CMAKE_REQUIRED_FLAGS -fsanitize=fuzzer-no-link)
 check_c_source_compiles("int main(void) { return 0; }" STERADIAN_HAS_LIBFUZZER)
@@ -9,6 +9,7 @@ unset(CMAKE_REQUIRED_FLAGS)
 
 add_library(steradian_fuzzed STATIC EXCLUDE_FROM_ALL ${fuzzed_sources} ${RGB_TABLE_SOURCES})
 target_include_directories(steradian_fuzzed PUBLIC src include tests)
+target_include_directories(steradian_fuzzed SYSTEM PRIVATE ${NANOVDB_INCLUDE_DIR})
 target_compile_options(steradian_fuzzed PUBLIC ${fuzz_flags})
 target_link_options(steradian_fuzzed PUBLIC -fsanitize=address,undefined)
 target_link_libraries(steradian_fuzzed PUBLIC steradian_flags Threads::Threads ZLIB::ZLIB EXPAT::EXPAT m)
@@ -38,9 +39,10 @@ endfunction()
 
 set(description_sources src/import/number.c src/import/pbrt/compose.c src/import/pbrt/description.c src/import/pbrt/names.c src/import/pbrt/files.c
   src/import/pbrt/params.c src/import/pbrt/lexer.c)
-file(GLOB gltf_sources CONFIGURE_DEPENDS src/import/gltf/*.c src/image/*.c src/medium/*.c)
+file(GLOB gltf_sources CONFIGURE_DEPENDS src/import/gltf/*.c src/image/*.c)
 fuzz_formats(fuzz_measured.c "merl;rgl;rgl_rgb;polarised;klems;tree;cornell;astm;abg;table;cloud")
 fuzz_formats(fuzz_photometry.c "ies;ies_b;ldt")
+fuzz_formats(fuzz_nanovdb.c "nanovdb")
 fuzz_formats(fuzz_gltf.c "gltf;glb" ${description_sources} ${gltf_sources})
 fuzz_formats(fuzz_mesh.c "obj;stl_text;stl_binary" ${description_sources} src/import/ply.c src/import/ply_header.c src/import/obj.c
   src/import/obj_materials.c src/import/polygon.c src/import/stl.c src/import/framing.c)
