@@ -6,6 +6,7 @@
 #include "image/image.h"
 #include "import/import.h"
 #include "import/pbrt/description.h"
+#include "import/ply.h"
 
 /* One texture, made for the uses that have been asked for: FLOAT, ALBEDO, UNBOUNDED, ILLUMINANT. */
 struct sr_pbrt_bound_texture {
@@ -52,6 +53,7 @@ struct sr_pbrt_build {
     int threads;
     uint64_t hash;
     float shutter_open, shutter_close; // [s]
+    float edge_scale;  // [1] of "edgelength"
     bool is_borrowing; // what is bound ends before the description does: runs stay where they lie
     float film_diagonal; // [m]
     int depth; // of textures and materials being made
@@ -119,6 +121,10 @@ sr_status sr_pbrt_medium(struct sr_pbrt_build *b, const char *name, struct sr_lo
 
 /* uncertainties.c: those that the file declares; the one that the options name is added to its parameter, before anything is built. */
 sr_status sr_pbrt_uncertainties(struct sr_pbrt_build *b);
+
+/* displace.c: the mesh with vertices moved along their normals, after its edges have been made shorter than edge_length [m]. */
+sr_status sr_pbrt_displace(struct sr_ply_mesh *ply, const struct sr_transform *object_to_world, float edge_length, struct sr_texture displacement,
+                           struct sr_error *error);
 
 /* lights.c and shapes.c add to the scene; settings.c fills the rest of the result. */
 sr_status sr_pbrt_build_lights(struct sr_pbrt_build *b);

@@ -302,7 +302,8 @@ static sr_status build_integrator(struct sr_pbrt_build *b, enum sr_light_choice 
 static sr_status build_options(struct sr_pbrt_build *b)
 {
     static const char *const harmless[] = {"rendercoordsys",    "wavefront",       "pixelstats",
-                                           "msereferenceimage", "msereferenceout", "displacementedgescale"};
+                                           "msereferenceimage", "msereferenceout"};
+    b->edge_scale = 1;
     b->result->jitter_pixel = b->result->jitter_lambda = true;
     b->result->units = b->options->units;
     for (size_t i = 0; i < b->d->options.count; ++i) {
@@ -322,6 +323,11 @@ static sr_status build_options(struct sr_pbrt_build *b)
                                     "Option \"seed\": expected one integer");
             if (!sr_pbrt_find(&b->d->sampler.params, "seed")) // the sampler's own word counts more
                 b->result->seed = (uint32_t)o->value.ints[0];
+        } else if (strcmp(o->name, "displacementedgescale") == 0) {
+            bool is_number = o->value.count == 1 && (o->value.type == SR_PBRT_FLOAT || o->value.type == SR_PBRT_INTEGER);
+            b->edge_scale = !is_number ? 0 : o->value.type == SR_PBRT_FLOAT ? o->value.floats[0] : (float)o->value.ints[0];
+            if (!(b->edge_scale > 0) || !isfinite(b->edge_scale))
+                return sr_pbrt_fail(b->d, o->value.where, b->error, SR_ERROR_INPUT, "Option \"%s\": expected one positive number", o->value.name);
         } else if (strcmp(o->name, "units") == 0) {
             const char *word = o->value.type == SR_PBRT_STRING_TYPE && o->value.count == 1 ? o->value.strings[0] : "";
             bool is_si = strcmp(word, "si") == 0;

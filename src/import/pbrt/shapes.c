@@ -14,10 +14,14 @@ static const struct sr_param common_params[] = {
     {.name = NULL},
 };
 const struct sr_param *const sr_pbrt_shape_params = common_params;
+struct displaced {
+    struct sr_texture displacement;
+    float edge_length; // [m]
+};
 static const struct sr_param ply_params[] = {
-    {SR_PARAM_FILE, "filename", "1", 0, 0, NAN, 0, "the PLY file; .gz is unpacked"},
-    {SR_PARAM_FLOAT_TEXTURE, "displacement", "m", -INFINITY, INFINITY, NAN, 0, "along the normal"},
-    {SR_PARAM_FLOAT, "edgelength", "m", 0, INFINITY, 1, 0, "displaced meshes are divided until edges are shorter"},
+    {.kind = SR_PARAM_FILE, .name = "filename", .text = "a PLY file, which gzip may have packed"},
+    {SR_PARAM_FLOAT_TEXTURE, "displacement", "m", -INFINITY, INFINITY, NAN, offsetof(struct displaced, displacement), "of the vertices along their normals"},
+    {SR_PARAM_FLOAT, "edgelength", "m", 0, INFINITY, 1, offsetof(struct displaced, edge_length), "that no edge reaches, in the world, before displacement"},
     {.name = NULL},
 };
 const struct sr_param *const sr_pbrt_ply_params = ply_params;
@@ -34,7 +38,7 @@ struct adder {
     sr_object_id *objects;
     struct loaded *window;
     size_t window_start, window_size;
-    bool has_warned_object_light, has_warned_curve_light, has_warned_curve_normals, has_warned_displacement;
+    bool has_warned_object_light, has_warned_curve_light, has_warned_curve_normals;
     uint32_t emission_of; // area_light1 of
     const struct sr_light_emission *emission;
     const struct sr_media *media; // of the last shape that had some
@@ -203,20 +207,28 @@ static sr_status make_quads(struct sr_pbrt_build *b, const struct sr_pbrt_shape 
     return add_patches(b, s, &m, shapes, count);
 }
 
+static sr_status displace(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, struct sr_ply_mesh *ply)
+{
+    struct displaced d;
+    const struct sr_param *table = ply_params + 1; // without the file
+    sr_status status = sr_pbrt_bind(b, table, &s->entity, (struct sr_pbrt_use){SR_PARAM_ALBEDO, false}, &d);
+    if (status == SR_OK && sr_pbrt_find(&s->entity.params, "displacement"))
+        status = sr_pbrt_finish_textures(b); // so that they can be asked now
+    if (status != SR_OK || !sr_pbrt_find(&s->entity.params, "displacement"))
+        return status;
+    struct sr_error inner = {0};
+    struct sr_transform to_world = sr_pbrt_transform_of(b, s->entity.transform)->start;
+    return sr_pbrt_displace(ply, &to_world, d.edge_length * b->edge_scale, d.displacement, &inner) == SR_OK ? SR_OK
+                                                                                                            : sr_pbrt_wrap(b, &s->entity, &inner);
+}
+
 static sr_status make_ply(struct adder *a, const struct sr_pbrt_shape *s, struct loaded *l, struct sr_shape shapes[],
                           int *count)
 {
     struct sr_pbrt_build *b = a->b;
-    const struct sr_pbrt_params *params = &s->entity.params;
     if (l->error.status != SR_OK)
         return sr_pbrt_fail(b->d, s->entity.where, b->error, l->error.status, "%s", l->error.text);
     b->hash = sr_pbrt_hash(b->hash, &l->hash, sizeof l->hash);
-    if (sr_pbrt_find(params, "displacement") && !a->has_warned_displacement) {
-        a->has_warned_displacement = true;
-        sr_pbrt_warn(b->d, s->entity.where,
-                     "Shape \"plymesh\": \"displacement\" is not supported yet, the mesh stays as it is");
-    }
-    sr_pbrt_find(params, "edgelength");
     struct sr_ply_mesh *ply = &l->mesh;
     if (ply->fan_count)
         sr_pbrt_warn(b->d, s->entity.where, "%s: %u faces have more than four corners: each became a fan of triangles",
@@ -225,7 +237,9 @@ static sr_status make_ply(struct adder *a, const struct sr_pbrt_shape *s, struct
         sr_pbrt_warn(b->d, s->entity.where, "%s: %u faces have fewer than three corners: left out", l->path,
                      ply->dropped_count);
     struct sr_slice uv;
-    sr_status status = copy_run(b, ply->uv, ply->vertex_count, sizeof(sr_vec2), &uv);
+    sr_status status = displace(b, s, ply);
+    if (status == SR_OK)
+        status = copy_run(b, ply->uv, ply->vertex_count, sizeof(sr_vec2), &uv);
     if (status == SR_OK && ply->triangle_count)
         status = make_triangles(b, s, ply, uv, &shapes[(*count)++]);
     if (status == SR_OK && ply->quad_count)

@@ -66,6 +66,7 @@ sr_status sr_pbrt_finish_textures(struct sr_pbrt_build *b)
         if (late[k].error.status != SR_OK)
             sr_pbrt_wrap(b, late[k].entity, &late[k].error); // the first one sticks
     }
+    b->late_textures.count = 0;
     return b->error->status;
 }
 
