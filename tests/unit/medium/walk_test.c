@@ -236,7 +236,7 @@ TEST(transmittance_by_the_walk_is_that_of_sigma_t)
             struct line line;
             do
                 line = random_line(&rng, &transform);
-            while (line.out - line.in < 0.2);
+            while (line.out - line.in < 0.2 || depth_within(&line, (line.in + line.out) / 2) < 0.01); // in a face rounding decides
             enum { PIECES = 4000 };
             double depth = 0, step = (line.out - line.in) / PIECES;
             for (int j = 0; j <= PIECES; ++j)
