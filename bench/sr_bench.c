@@ -14,6 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -125,6 +126,47 @@ static int run_case(const struct settings *s, const char *name, const char *path
     return 0;
 }
 
+/* Reading and building alone, of real scenes; the rows of docs/performance.md. */
+static const char *const large_scenes[] = {"bathroom/scene-v4", "staircase2/scene-v4", "coffee/scene-v4", "teapot-full/scene-v4", "metal-instances/metal"};
+
+static int run_load(const char *name, const char *path)
+{
+    struct sr_import_options options = {.spp = 1, .width = 8, .height = 8};
+    struct sr_log log = {.write = warn};
+    struct sr_error error = {0};
+    struct sr_import_result scene;
+    double start_s = sr_clock_s();
+    if (sr_import_pbrt(path, &options, &scene, &log, &error) != SR_OK) {
+        fprintf(stderr, "sr_bench: %s\n", error.text);
+        return 1;
+    }
+    double load_s = sr_clock_s() - start_s;
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    double cpu_s = (double)usage.ru_utime.tv_sec + 1e-6 * (double)usage.ru_utime.tv_usec; // of all threads
+    struct sr_scene_counts counts = sr_scene_count(scene.scene);
+    printf("{\"case\": \"load %s\", \"load_s\": %.3f, \"cpu_s\": %.3f, \"read_s\": %.3f, \"build_s\": %.3f, \"threads\": %d, \"peak_memory_B\": %llu, \"triangles\": %llu}\n", name, load_s,
+           cpu_s, scene.read_s, counts.build_s, sr_thread_count(), (unsigned long long)sr_peak_memory_B(), (unsigned long long)counts.triangles);
+    sr_import_result_free(&scene);
+    return 0;
+}
+
+static int load_apart(const char *name)
+{
+    char path[4096];
+    snprintf(path, sizeof path, "%s/scenes/%s.pbrt", SR_BENCH_REFERENCE_DIR, name);
+    if (!sr_file_exists(path)) {
+        fprintf(stderr, "sr_bench: %s is not there: left out\n", path);
+        return 0;
+    }
+    fflush(stdout);
+    pid_t child = fork();
+    if (child == 0)
+        exit(run_load(name, path));
+    int status = 1;
+    return child < 0 || waitpid(child, &status, 0) < 0 || !WIFEXITED(status) ? 1 : WEXITSTATUS(status);
+}
+
 static int run_apart(const struct settings *s, const char *name, const char *path)
 {
     fflush(stdout);
@@ -165,7 +207,7 @@ int main(int argc, char **argv)
         case 'd': s.folder = optarg; break;
         case 'b': return bench_bsdfs(optarg);
         default:
-            printf("Usage: sr_bench --bsdf[=MODEL]\n       sr_bench [--case cornell|mesh|glossy|emitters] [--scene FILE] [--spp N] [--size PIXELS] [--runs N] [--folder SCENES]\n");
+            printf("Usage: sr_bench --bsdf[=MODEL]\n       sr_bench [--case cornell|mesh|glossy|emitters|load] [--scene FILE] [--spp N] [--size PIXELS] [--runs N] [--folder SCENES]\n");
             return option == 'h' ? 0 : 2;
         }
     s.runs = s.runs < 1 ? 1 : s.runs > MAX_RUNS ? MAX_RUNS : s.runs;
@@ -183,5 +225,7 @@ int main(int argc, char **argv)
         snprintf(path, sizeof path, "%s/%s.pbrt", s.folder, cases[i]);
         failed |= run_apart(&s, cases[i], path);
     }
+    for (size_t i = 0; i < sizeof large_scenes / sizeof *large_scenes && (!s.only || strcmp(s.only, "load") == 0); ++i)
+        failed |= load_apart(large_scenes[i]);
     return failed;
 }
