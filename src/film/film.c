@@ -25,8 +25,9 @@ sr_status sr_film_create(const struct sr_film_settings *settings, bool with_aov,
     if (film) {
         film->pixels = sr_alloc(n * sizeof *film->pixels);
         film->aov = with_aov ? sr_alloc(n * sizeof *film->aov) : NULL;
+        film->buckets = settings->buckets ? sr_alloc(n * settings->buckets * sizeof *film->buckets) : NULL;
     }
-    if (!film || !film->pixels || (with_aov && !film->aov)) {
+    if (!film || !film->pixels || (with_aov && !film->aov) || (settings->buckets && !film->buckets)) {
         sr_film_destroy(film);
         return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for a picture of %lld x %lld pixels", (long long)w, (long long)h);
     }
@@ -47,6 +48,7 @@ void sr_film_destroy(struct sr_film *film)
     sr_free(film->splats);
     sr_free(film->pixels);
     sr_free(film->aov);
+    sr_free(film->buckets);
     sr_free(film);
 }
 
@@ -98,6 +100,26 @@ void sr_film_block_add_first(struct sr_film_block *b, const struct sr_first_hit 
     s->p = sr_add(s->p, h->p);
     s->depth += h->depth;
     s->uv = (sr_vec2){s->uv.x + h->uv.x, s->uv.y + h->uv.y};
+    s->dzdx += h->dzdx;
+    s->dzdy += h->dzdy;
+    for (int c = 0; c < 3; ++c) {
+        s->rgb[c] += h->rgb[c];
+        b->square[c] += (double)h->rgb[c] * (double)h->rgb[c];
+    }
+}
+
+void sr_film_store_buckets(struct sr_film *film, uint32_t x, uint32_t y, const double *buckets)
+{
+    uint32_t n = film->settings.buckets;
+    double *to = film->buckets + ((size_t)y * film->width + x) * n;
+    for (uint32_t i = 0; i < n; ++i)
+        to[i] += buckets[i];
+}
+
+double sr_film_bucket(const struct sr_film *film, uint32_t x, uint32_t y, uint32_t bucket)
+{
+    size_t pixel = (size_t)y * film->width + x;
+    return film->pixels[pixel].n ? film->buckets[pixel * film->settings.buckets + bucket] / film->pixels[pixel].n : 0;
 }
 
 void sr_film_store(struct sr_film *film, uint32_t x, uint32_t y, const struct sr_film_block *b)
@@ -129,6 +151,12 @@ void sr_film_store(struct sr_film *film, uint32_t x, uint32_t y, const struct sr
     a->depth += s->depth;
     a->uv[0] += s->uv.x;
     a->uv[1] += s->uv.y;
+    a->dzdx += s->dzdx;
+    a->dzdy += s->dzdy;
+    for (int c = 0; c < 3; ++c) {
+        a->rgb[c] += (double)s->rgb[c];
+        a->square[c] += b->square[c];
+    }
     a->hits += b->hits;
     a->n_samples += b->samples_seen;
 }
@@ -177,7 +205,12 @@ static void join_pixel(struct sr_film_pixel *a, const struct sr_film_pixel *b)
 
 void sr_film_join_halves(struct sr_film *a, const struct sr_film *b)
 {
-    size_t count = (size_t)a->width * a->height;
+    size_t count = (size_t)a->width * a->height, buckets = a->settings.buckets;
+    for (size_t i = 0; i < count * buckets; ++i) { // means, and then sums of all samples
+        uint32_t n = a->pixels[i / buckets].n, m = b->pixels[i / buckets].n;
+        double mean = n && m ? (a->buckets[i] / n + b->buckets[i] / m) / 2 : n ? a->buckets[i] / n : m ? b->buckets[i] / m : 0;
+        a->buckets[i] = mean * ((double)n + m);
+    }
     for (size_t i = 0; i < count; ++i)
         join_pixel(&a->pixels[i], &b->pixels[i]);
     for (size_t i = 0; a->has_aov && i < count; ++i) {
@@ -194,6 +227,12 @@ void sr_film_join_halves(struct sr_film *a, const struct sr_film *b)
         to->depth += from->depth;
         to->uv[0] += from->uv[0];
         to->uv[1] += from->uv[1];
+        to->dzdx += from->dzdx;
+        to->dzdy += from->dzdy;
+        for (int c = 0; c < 3; ++c) {
+            to->rgb[c] += from->rgb[c];
+            to->square[c] += from->square[c];
+        }
         to->hits += from->hits;
         to->n_samples += from->n_samples;
     }

@@ -50,7 +50,13 @@ struct sr_film_settings {
     float iso;                         // 100
     float exposure_time;               // [s] shutter close - open
     float white_balance;               // [K]; 0: none
-    float max_component;               // infinity: no clamping
+    float max_component;               // infinity: no clamping; of the sensor's values, before white balance
+    uint32_t buckets;                  // of wavelengths that are kept apart; 0: none
+    float lambda_min, lambda_max;      // [nm] that they share evenly
+    float bucket_scale;                // of radiance as scenes have it: 1/683 gives W m^-2 sr^-1 nm^-1
+    bool is_gbuffer;                   // keeps what is seen first: P, N and Ns, dzdx and dzdy
+    const struct sr_motion *camera; // of a G-buffer: camera to world, for dzdx and dzdy
+    const struct sr_motion *of_points; // the same for P, N and Ns; NULL: they are in the world
     const char *filename;
 };
 /* RGB of the output space from XYZ of the path: white balance and imaging ratio = exposure_time * iso / 100 included. */
@@ -66,6 +72,8 @@ struct sr_first_hit {
     float depth;          // [m] distance along the ray
     sr_vec2 uv;           // [1]
     uint32_t material, object; // numbers, from 1; 0: none
+    float dzdx, dzdy;     // [m] change of the depth along the camera's axis, of a G-buffer
+    float rgb[3];         // of the sample, for a G-buffer's variance
 };
 
 /* One pixel's sums while a block is being made, owned by a worker. */
@@ -76,6 +84,7 @@ struct sr_film_block {
     float largest;    // R + G + B of the brightest sample
     struct sr_first_hit first_sum; // sums of the continuous members
     uint32_t hits, samples_seen;
+    double square[3]; // of rgb over hits
 };
 
 struct sr_film_pixel {
@@ -108,8 +117,14 @@ struct sr_film {
         float albedo[3], n[3], ns[3], p[3], depth, uv[2]; // sums over hits
         uint32_t hits, n_samples;
         uint32_t material, object;
+        float dzdx, dzdy;
+        double rgb[3], square[3]; // sums over hits
     } *aov;
+    double *buckets; // [pixel][bucket] sums, or NULL
 };
+void sr_film_store_buckets(struct sr_film *film, uint32_t x, uint32_t y, const double *buckets);
+/* Mean over the bucket of the radiance, times bucket_scale and the imaging ratio. */
+double sr_film_bucket(const struct sr_film *film, uint32_t x, uint32_t y, uint32_t bucket);
 sr_status sr_film_create(const struct sr_film_settings *settings, bool with_aov, struct sr_film **out, struct sr_error *error);
 void sr_film_destroy(struct sr_film *film);
 void sr_film_block_add(struct sr_film_block *b, const float rgb[3], bool is_finite);

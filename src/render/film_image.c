@@ -10,9 +10,17 @@ static const struct channel {
   errors[] = {{"SE.R", "cd/m^2"}, {"SE.G", "cd/m^2"}, {"SE.B", "cd/m^2"}, {"samples", "1"}},
   auxiliary[] = {{"albedo.R", "1"}, {"albedo.G", "1"}, {"albedo.B", "1"}, {"N.X", "1"}, {"N.Y", "1"}, {"N.Z", "1"},
                  {"Ns.X", "1"}, {"Ns.Y", "1"}, {"Ns.Z", "1"}, {"P.X", "m"}, {"P.Y", "m"}, {"P.Z", "m"},
-                 {"depth", "m"}, {"u", "1"}, {"v", "1"}, {"id.material", "1"}, {"id.object", "1"}, {"coverage", "1"}};
+                 {"depth", "m"}, {"u", "1"}, {"v", "1"}, {"id.material", "1"}, {"id.object", "1"}, {"coverage", "1"}},
+  gbuffer[] = {{"Albedo.R", "1"}, {"Albedo.G", "1"}, {"Albedo.B", "1"}, {"N.X", "1"}, {"N.Y", "1"}, {"N.Z", "1"},
+               {"Ns.X", "1"}, {"Ns.Y", "1"}, {"Ns.Z", "1"}, {"P.X", "m"}, {"P.Y", "m"}, {"P.Z", "m"},
+               {"depth", "m"}, {"u", "1"}, {"v", "1"}, {"id.material", "1"}, {"id.object", "1"}, {"coverage", "1"}, // as above
+               {"dzdx", "m"}, {"dzdy", "m"}, {"Variance.R", "cd^2/m^4"}, {"Variance.G", "cd^2/m^4"}, {"Variance.B", "cd^2/m^4"},
+               {"RelativeVariance.R", "cd/m^2"}, {"RelativeVariance.G", "cd/m^2"}, {"RelativeVariance.B", "cd/m^2"}};
 
-enum { PICTURE = 3, ERRORS = 4, AUXILIARY = sizeof auxiliary / sizeof auxiliary[0] };
+enum {
+    PICTURE = 3, ERRORS = 4, AUXILIARY = sizeof auxiliary / sizeof auxiliary[0], GBUFFER = sizeof gbuffer / sizeof gbuffer[0],
+    BUCKET_NAME = 32
+};
 
 static void add_names(const struct channel *list, int n, const char **names, const char **units, uint32_t *count)
 {
@@ -48,20 +56,73 @@ static float *put_auxiliary(float *out, const struct sr_film_aov *a)
     return out;
 }
 
+/* Variance of one sample that meets something, as pbrt has it; and that over the mean. */
+static float *put_gbuffer(float *out, const struct sr_film_aov *a)
+{
+    float per_hit = a->hits ? 1 / (float)a->hits : 0, relative[3];
+    *out++ = a->dzdx * per_hit;
+    *out++ = a->dzdy * per_hit;
+    for (int c = 0; c < 3; ++c) {
+        double n = a->hits, mean = n > 0 ? a->rgb[c] / n : 0, variance = n > 1 ? fmax(0, a->square[c] - n * mean * mean) / (n - 1) : 0;
+        *out++ = (float)variance;
+        relative[c] = mean != 0 ? (float)(variance / mean) : 0;
+    }
+    for (int c = 0; c < 3; ++c)
+        *out++ = relative[c];
+    return out;
+}
+
+/* "S0.374,688nm", as in the layout of A. Fichet, R. Pacanowski & A. Wilkie, 2021: the middle of the bucket. */
+static void name_bucket(const struct sr_film_settings *s, uint32_t bucket, char name[BUCKET_NAME])
+{
+    double lambda = (double)s->lambda_min + ((double)bucket + 0.5) / s->buckets * ((double)s->lambda_max - (double)s->lambda_min);
+    snprintf(name, BUCKET_NAME, "S0.%.3fnm", lambda);
+    for (char *c = name + 3; *c; ++c)
+        if (*c == '.')
+            *c = ',';
+}
+
+static sr_status create(const struct sr_film *film, const char **names, const char **units, uint32_t count, char (*bucket_names)[BUCKET_NAME],
+                        struct sr_image **image, struct sr_error *error)
+{
+    for (uint32_t i = 0; i < film->settings.buckets; ++i) {
+        name_bucket(&film->settings, i, bucket_names[i]);
+        names[count] = bucket_names[i];
+        units[count++] = film->settings.bucket_scale < 1 ? "W/(m^2 sr nm)" : "1"; // of photometric scenes: as pbrt counts
+    }
+    if (sr_image_create(film->width, film->height, count, names, SR_IMAGE_FLOATS, image, error) != SR_OK)
+        return error->status;
+    for (uint32_t c = 0; c < count; ++c)
+        sr_image_set_unit(*image, c, units[c]);
+    return SR_OK;
+}
+
 sr_status sr_render_image(const struct sr_film *film, bool with_error, bool is_replicated, struct sr_image **image, struct sr_error *error)
 {
-    const char *names[PICTURE + ERRORS + AUXILIARY], *units[PICTURE + ERRORS + AUXILIARY];
-    uint32_t count = 0;
+    enum { MOST = PICTURE + ERRORS + GBUFFER };
+    uint32_t count = 0, buckets = film->settings.buckets;
+    bool is_gbuffer = film->settings.is_gbuffer;
+    const char **names = sr_alloc(2 * (MOST + buckets) * sizeof *names), **units = names + MOST + buckets;
+    char(*bucket_names)[BUCKET_NAME] = sr_alloc((buckets + 1) * sizeof *bucket_names);
+    if (!names || !bucket_names) {
+        sr_free(names);
+        sr_free(bucket_names);
+        return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for a picture");
+    }
     add_names(picture, PICTURE, names, units, &count);
     if (with_error)
         add_names(errors, ERRORS, names, units, &count);
     if (film->has_aov)
-        add_names(auxiliary, AUXILIARY, names, units, &count);
-    if (sr_image_create(film->width, film->height, count, names, SR_IMAGE_FLOATS, image, error) != SR_OK)
-        return error->status;
+        add_names(is_gbuffer ? gbuffer : auxiliary, is_gbuffer ? GBUFFER : AUXILIARY, names, units, &count);
+    sr_status status = create(film, names, units, count, bucket_names, image, error);
+    sr_free(names);
+    sr_free(bucket_names);
+    if (status != SR_OK)
+        return status;
     struct sr_image *out = *image;
-    for (uint32_t c = 0; c < count; ++c)
-        sr_image_set_unit(out, c, units[c]);
+    if (buckets && (sr_image_set_attribute(out, "spectralLayoutVersion", "1.0", error) != SR_OK ||
+                    sr_image_set_attribute(out, "emissiveUnits", "W.m^-2.sr^-1", error) != SR_OK))
+        return error->status;
     out->x0 = film->settings.x0;
     out->y0 = film->settings.y0;
     out->full_width = (uint32_t)film->settings.width;
@@ -87,7 +148,11 @@ sr_status sr_render_image(const struct sr_film *film, bool with_error, bool is_r
                 *p++ = (float)film->pixels[i].n;
             }
             if (film->has_aov)
-                put_auxiliary(p, &film->aov[i]);
+                p = put_auxiliary(p, &film->aov[i]);
+            if (film->has_aov && is_gbuffer)
+                p = put_gbuffer(p, &film->aov[i]);
+            for (uint32_t k = 0; k < buckets; ++k)
+                *p++ = (float)sr_film_bucket(film, x, y, k);
         }
     return SR_OK;
 }

@@ -13,6 +13,9 @@ static const float PIXEL_SHARE = 0.125f; // of a pixel's footprint: see sample_p
 struct response {
     float rgb_from_xyz[3][3];
     struct sr_lambda_law law;
+    uint32_t buckets;
+    float lambda_min, lambda_step; // [nm] of a bucket
+    float bucket_scale; // with the imaging ratio
     bool (*ray)(const void *sensor, sr_vec2 raster, sr_vec2 u_lens, float u_time, struct sr_sensor_ray *out);
 };
 
@@ -33,6 +36,7 @@ struct run {
     uint32_t first_dropped[4];     // x, y, replicate, sample
     bool has_dropped;
     struct sr_film_block *scratch; // tile * tile for each thread
+    double *buckets;               // as many times the film's buckets; NULL: it has none
     struct sr_path_start middle;   // a ray of the sensor's, for the footprints of light paths
     bool has_middle;
 };
@@ -67,20 +71,69 @@ static void first_albedo(const struct sr_render_job *job, struct sr_hit *hit, sr
 static struct response response_of(const struct sr_render_job *job)
 {
     const struct sr_sensor_model *sensor = job->sensor.model;
-    bool is_bare = sensor->bare_ray && !sr_scene_has_footprints(job->scene);
-    struct response r = {.law = sr_lambda_law(job->lambda), .ray = is_bare ? sensor->bare_ray : sensor->ray};
+    bool is_bare = sensor->bare_ray && !sr_scene_has_footprints(job->scene) && !job->film.is_gbuffer;
+    const struct sr_film_settings *f = &job->film;
+    struct response r = {.law = sr_lambda_law(job->lambda), .buckets = f->buckets, .lambda_min = f->lambda_min,
+                         .lambda_step = f->buckets ? (f->lambda_max - f->lambda_min) / (float)f->buckets : 0, .bucket_scale = f->bucket_scale * f->exposure_time * f->iso / 100, .ray = is_bare ? sensor->bare_ray : sensor->ray};
     sr_film_response(&job->film, r.rgb_from_xyz);
     return r;
 }
 
+/* Wavelengths of a film that keeps them apart: even over its range, as pbrt's. */
+static struct sr_wavelengths even_wavelengths(const struct response *r, float u)
+{
+    struct sr_wavelengths w = {.pdf = SR_BLACK + 1 / (r->lambda_step * (float)r->buckets)};
+    for (int i = 0; i < SR_LAMBDA_COUNT; ++i) {
+        float v = u + (float)i / SR_LAMBDA_COUNT;
+        w.lambda[i] = r->lambda_min + (v < 1 ? v : v - 1) * r->lambda_step * (float)r->buckets;
+    }
+    return w;
+}
+
+/* A wavelength's share of its bucket's mean: L / (pdf N step). One that dispersion has ended counts nothing, and the first one
+ * more, so that the mean stays right. */
+static void add_to_buckets(const struct response *r, sr_spectrum L, const struct sr_wavelengths *w, float weight, double *buckets)
+{
+    float scale = weight * r->bucket_scale / (SR_LAMBDA_COUNT * r->lambda_step);
+    for (int i = 0; i < SR_LAMBDA_COUNT; ++i) {
+        int bucket = (int)((w->lambda[i] - r->lambda_min) / r->lambda_step);
+        if (w->pdf[i] > 0 && isfinite(L[i]))
+            buckets[bucket < 0 ? 0 : bucket < (int)r->buckets ? bucket : (int)r->buckets - 1] += (double)(scale * L[i] / w->pdf[i]);
+    }
+}
+
+/* The first surface as a G-buffer has it: seen from the front, in the space that is asked for. */
+static void fill_gbuffer(const struct sr_render_job *job, const struct sr_path_start *start, struct sr_point *x, struct sr_first_hit *first)
+{
+    const struct sr_film_settings *f = &job->film;
+    struct sr_transform t;
+    float least = 1 / sqrtf((float)job->spp), samples = sr_max(PIXEL_SHARE, least) / (job->jitter_pixel ? PIXEL_SHARE : 1);
+    sr_first_footprint(start, x);
+    first->n = sr_face_forward(first->n, sr_neg(start->ray.d));
+    first->ns = sr_face_forward(first->ns, sr_neg(start->ray.d));
+    if (f->camera) {
+        sr_motion_at(f->camera, x->time, &t);
+        first->dzdx = samples * sr_inverse_vector(&t, x->dpdx).z;
+        first->dzdy = samples * sr_inverse_vector(&t, x->dpdy).z;
+    }
+    if (!f->of_points)
+        return;
+    sr_motion_at(f->of_points, x->time, &t);
+    t = sr_transform_invert(&t);
+    first->p = sr_transform_point(&t, first->p);
+    first->n = sr_normalize(sr_transform_normal(&t, first->n));
+    first->ns = sr_normalize(sr_transform_normal(&t, first->ns));
+}
+
 static bool sample_pixel(const struct sr_render_job *job, const struct response *response, uint32_t x, uint32_t y, const struct sr_sampler *sampler,
-                         float rgb[3], struct sr_first_hit *first, struct sr_worker *worker)
+                         float rgb[3], double *buckets, struct sr_first_hit *first, struct sr_worker *worker)
 {
     sr_u4 u, u_lens;
     sr_sample8(sampler, SR_USE_FILM, &u, &u_lens);
     float weight = 1;
     sr_vec2 offset = job->jitter_pixel ? sr_filter_sample(&job->filter, (sr_vec2){u[0], u[1]}, &weight) : (sr_vec2){0, 0};
-    struct sr_wavelengths w = sr_wavelengths_draw(&response->law, job->jitter_lambda ? u[2] : 0.5f);
+    float u_lambda = job->jitter_lambda ? u[2] : 0.5f;
+    struct sr_wavelengths w = SR_UNLIKELY(response->buckets) ? even_wavelengths(response, u_lambda) : sr_wavelengths_draw(&response->law, u_lambda);
     sr_wavelengths_know(&w, sr_scene_lights(job->scene)->white);
     struct sr_sensor_ray view;
     rgb[0] = rgb[1] = rgb[2] = 0;
@@ -106,6 +159,9 @@ static bool sample_pixel(const struct sr_render_job *job, const struct response 
         for (int c = 0; c < 3; ++c)
             rgb[c] *= job->film.max_component / largest;
 
+    if (SR_UNLIKELY(buckets))
+        add_to_buckets(response, L, &w, weight * (largest > job->film.max_component ? job->film.max_component / largest : 1), buckets);
+
     if (first) {
         *first = (struct sr_first_hit){.is_hit = hit.material != NULL};
         if (hit.material) {
@@ -116,6 +172,10 @@ static bool sample_pixel(const struct sr_render_job *job, const struct response 
             first->uv = hit.point.uv;
             first->material = hit.material_number;
             first->object = hit.object;
+            if (job->film.is_gbuffer)
+                fill_gbuffer(job, &start, &hit.point, first);
+            for (int c = 0; c < 3; ++c)
+                first->rgb[c] = rgb[c];
             first_albedo(job, &hit, view.ray.d, sampler, &w, first->albedo);
         }
     }
@@ -127,7 +187,7 @@ bool sr_render_sample(const struct sr_render_job *job, uint32_t x, uint32_t y, u
 {
     struct response response = response_of(job);
     struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, x, y, replicate, sample);
-    return sample_pixel(job, &response, x, y, &sampler, rgb, first, worker);
+    return sample_pixel(job, &response, x, y, &sampler, rgb, NULL, first, worker);
 }
 
 /* ---- paths from the lights ---- */
@@ -216,11 +276,13 @@ static bool is_cancelled(struct run *run)
 }
 
 /* The samples of one pixel in one block; false: cancelled, nothing of it counts. */
-static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, struct sr_film_block *b, struct splatting *splatting, struct sr_worker *worker)
+static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, struct sr_film_block *b, double *buckets, struct splatting *splatting, struct sr_worker *worker)
 {
     const struct sr_render_job *job = run->job;
     const struct sr_render_pass *pass = run->pass;
     *b = (struct sr_film_block){0};
+    for (uint32_t i = 0; buckets && i < run->response.buckets; ++i)
+        buckets[i] = 0;
     uint32_t pixel = (y - (uint32_t)job->film.y0) * run->film->width + x - (uint32_t)job->film.x0;
     uint32_t replicate = 0, begin = 0, end = pass->counts ? pass->counts[pixel] : pass->per_replicate;
     if (end > 0)
@@ -241,7 +303,7 @@ static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, 
         }
         float rgb[3];
         struct sr_first_hit first;
-        bool is_finite = sample_pixel(job, &run->response, x, y, &sampler, rgb, job->with_aov ? &first : NULL, worker);
+        bool is_finite = sample_pixel(job, &run->response, x, y, &sampler, rgb, buckets, job->with_aov ? &first : NULL, worker);
         if (SR_UNLIKELY(!is_finite))
             remember_dropped(run, x, y, replicate, i);
         sr_film_block_add(b, rgb, is_finite);
@@ -277,7 +339,7 @@ static void tell_progress(struct run *run, double share)
     pthread_mutex_unlock(&run->progress_lock);
 }
 
-static bool do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratch, struct splatting *splatting, struct sr_worker *worker)
+static bool do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratch, double *buckets, struct splatting *splatting, struct sr_worker *worker)
 {
     uint32_t tiles = run->tiles_x * run->tiles_y, tile = (uint32_t)(unit % tiles), block = (uint32_t)(unit / tiles);
     uint32_t x0 = tile % run->tiles_x * run->tile, y0 = tile / run->tiles_x * run->tile;
@@ -287,7 +349,7 @@ static bool do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratc
     uint64_t paths = 0;
     for (uint32_t y = y0; y < y1; ++y)
         for (uint32_t x = x0; x < x1; ++x, ++done) {
-            if (is_cancelled(run) || !fill_block(run, left + x, top + y, block, &scratch[done], splatting, worker))
+            if (is_cancelled(run) || !fill_block(run, left + x, top + y, block, &scratch[done], buckets ? buckets + (size_t)done * run->response.buckets : NULL, splatting, worker))
                 return false;
             paths += scratch[done].n;
         }
@@ -300,8 +362,11 @@ static bool do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratc
     pthread_rwlock_rdlock(&run->film_lock);
     uint32_t i = 0;
     for (uint32_t y = y0; y < y1; ++y)
-        for (uint32_t x = x0; x < x1; ++x)
+        for (uint32_t x = x0; x < x1; ++x) {
+            if (buckets)
+                sr_film_store_buckets(run->film, x, y, buckets + (size_t)i * run->response.buckets);
             sr_film_store(run->film, x, y, &scratch[i++]);
+        }
     pthread_rwlock_unlock(&run->film_lock);
     atomic_store_explicit(&run->tile_blocks[tile], block + 1, memory_order_release);
     atomic_fetch_add_explicit(&run->paths, paths, memory_order_relaxed);
@@ -312,6 +377,7 @@ static void work(void *context, int thread)
 {
     struct run *run = context;
     struct sr_film_block *scratch = run->scratch + (size_t)thread * run->tile * run->tile;
+    double *buckets = run->buckets ? run->buckets + (size_t)thread * run->tile * run->tile * run->response.buckets : NULL;
     uint64_t units = (uint64_t)run->tiles_x * run->tiles_y * run->blocks;
     struct splatting splatting = begin_splatting(run);
     splatting.target.user = &splatting;
@@ -319,7 +385,7 @@ static void work(void *context, int thread)
     struct sr_worker worker = {.log = thread == 0 ? run->job->log : NULL, .target = splats ? &splatting.target : NULL};
     for (;;) {
         uint64_t unit = atomic_fetch_add_explicit(&run->next_unit, 1, memory_order_relaxed);
-        if (unit >= units || is_cancelled(run) || !do_unit(run, unit, scratch, splats ? &splatting : NULL, &worker))
+        if (unit >= units || is_cancelled(run) || !do_unit(run, unit, scratch, buckets, splats ? &splatting : NULL, &worker))
             break;
         uint64_t done = atomic_fetch_add_explicit(&run->units_done, 1, memory_order_relaxed) + 1;
         atomic_fetch_add_explicit(&run->rays, worker.rays, memory_order_relaxed);
@@ -357,7 +423,8 @@ sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render
     struct sr_arena arena = {0};
     run.tile_blocks = sr_arena_alloc(&arena, (size_t)run.tiles_x * run.tiles_y * sizeof *run.tile_blocks);
     run.scratch = sr_arena_alloc(&arena, (size_t)threads * run.tile * run.tile * sizeof *run.scratch);
-    if (!run.tile_blocks || !run.scratch) {
+    run.buckets = run.response.buckets ? sr_arena_alloc(&arena, (size_t)threads * run.tile * run.tile * run.response.buckets * sizeof *run.buckets) : NULL;
+    if (!run.tile_blocks || !run.scratch || (run.response.buckets && !run.buckets)) {
         sr_arena_free(&arena);
         return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for %d workers", threads);
     }
@@ -372,8 +439,10 @@ sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render
     return run.cancelled ? SR_CANCELLED : SR_OK;
 }
 
-sr_status sr_render(const struct sr_render_job *job, struct sr_film **film, struct sr_render_report *report, struct sr_error *error)
+sr_status sr_render(const struct sr_render_job *wanted, struct sr_film **film, struct sr_render_report *report, struct sr_error *error)
 {
+    struct sr_render_job own = *wanted, *job = &own;
+    own.with_aov |= own.film.is_gbuffer;
     *film = NULL;
     *report = (struct sr_render_report){0};
     if (job->spp < 1)
@@ -384,7 +453,10 @@ sr_status sr_render(const struct sr_render_job *job, struct sr_film **film, stru
     if (job->integrator.model->splat && !job->sensor.model->connect)
         return sr_fail(error, SR_ERROR_USAGE, "the estimator %s needs to know which ray of the sensor meets a given point, and the sensor %s cannot say; use path or bdpt",
                        job->integrator.model->name, job->sensor.model->name);
-    bool splats = job->integrator.model->splats && job->sensor.model->connect;
+    if (job->integrator.model->splat && job->film.buckets)
+        return sr_fail(error, SR_ERROR_USAGE, "the estimator %s brings light to the picture as colours, which a film of spectra cannot take; use path or bdpt",
+                       job->integrator.model->name);
+    bool splats = job->integrator.model->splats && job->sensor.model->connect && !job->film.buckets;
     if (job->adaptive.is_on && splats)
         return sr_fail(error, SR_ERROR_USAGE, "the estimator %s brings light to the whole picture at a time, and cannot spend samples on some pixels alone",
                        job->integrator.model->name);

@@ -56,6 +56,7 @@ struct sr_pbrt_build {
     float edge_scale;  // [1] of "edgelength"
     bool is_borrowing; // what is bound ends before the description does: runs stay where they lie
     float film_diagonal; // [m]
+    bool is_in_world;    // a G-buffer's points
     int depth; // of textures and materials being made
 
     struct sr_array named_shapes;             // struct sr_pbrt_named_shape, in the order of the file

@@ -15,6 +15,8 @@ struct film {
     int32_t width, height;
     float iso, white_balance, max_component, diagonal;
     bool savefp16;
+    int32_t buckets, coordinates;
+    float lambda_min, lambda_max;
     const char *sensor, *filename;
     struct sr_slice crop_window, pixel_bounds;
 };
@@ -33,6 +35,10 @@ static const struct sr_param film_params[] = {
     {SR_PARAM_BOOL, "savefp16", "1", 0, 1, 1, MEMBER(savefp16), "read; files are written with 32 bits"},
     {SR_PARAM_STRING, "sensor", "1", 0, 0, 0, MEMBER(sensor), "cie1931"},
     {SR_PARAM_STRING, "filename", "1", 0, 0, NAN, MEMBER(filename), NULL},
+    {SR_PARAM_INT, "nbuckets", "1", 1, 4096, 16, MEMBER(buckets), "of spectral: ranges of wavelengths kept apart"},
+    {SR_PARAM_FLOAT, "lambdamin", "nm", 1, 1e5, 360, MEMBER(lambda_min), "of spectral: where the first begins"},
+    {SR_PARAM_FLOAT, "lambdamax", "nm", 1, 1e5, 830, MEMBER(lambda_max), "of spectral: where the last ends"},
+    {SR_PARAM_ENUM, "coordinatesystem", "1", 0, 1, 0, MEMBER(coordinates), "camera|world"},
     {.name = NULL},
 };
 const struct sr_param *const sr_pbrt_film_params = film_params;
@@ -91,16 +97,21 @@ static const char *default_filename(struct sr_pbrt_build *b)
 static sr_status build_film(struct sr_pbrt_build *b)
 {
     const struct sr_pbrt_entity *e = &b->d->film;
-    const char *const supported[] = {"rgb"}, *const sensors[] = {"cie1931"};
+    const char *const supported[] = {"rgb", "gbuffer", "spectral"}, *const sensors[] = {"cie1931"};
     struct film f = {0};
-    if (strcmp(e->model, "rgb") != 0)
-        return sr_pbrt_unsupported(b, e, supported, 1);
+    bool is_gbuffer = strcmp(e->model, "gbuffer") == 0, is_spectral = strcmp(e->model, "spectral") == 0;
+    if (strcmp(e->model, "rgb") != 0 && !is_gbuffer && !is_spectral)
+        return sr_pbrt_unsupported(b, e, supported, 3);
     sr_status status = sr_pbrt_bind(b, film_params, e, plain, &f);
     if (status != SR_OK)
         return status;
     if (strcmp(f.sensor, sensors[0]) != 0)
         return sr_pbrt_fail(b->d, sr_pbrt_find(&e->params, "sensor")->where, b->error, SR_ERROR_INPUT,
                             "sensor \"%s\" is not supported yet; supported: %s", f.sensor, sensors[0]);
+    if (is_spectral && !(f.lambda_min < f.lambda_max))
+        return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "Film \"spectral\": lambdamin %g nm must be less than lambdamax %g nm", (double)f.lambda_min,
+                            (double)f.lambda_max);
+    b->is_in_world = f.coordinates == 1;
     const struct sr_import_options *o = b->options;
     int32_t w = o->width ? clamp_int(o->width, 1, 1 << 20) : f.width,
             h = o->height ? clamp_int(o->height, 1, 1 << 20) : f.height;
@@ -119,6 +130,10 @@ static sr_status build_film(struct sr_pbrt_build *b)
                                                 .exposure_time = 1,
                                                 .white_balance = f.white_balance,
                                                 .max_component = f.max_component,
+                                                .is_gbuffer = is_gbuffer,
+                                                .buckets = is_spectral ? (uint32_t)f.buckets : 0,
+                                                .lambda_min = f.lambda_min,
+                                                .lambda_max = f.lambda_max,
                                                 .filename = filename};
     sr_pbrt_warn_unused(b, e, film_params, NULL);
     return set_region(b, &f, &b->result->film);
@@ -188,6 +203,13 @@ static sr_status build_sensor(struct sr_pbrt_build *b)
     b->result->sensor = (struct sr_sensor){m, self};
     if (motion && sr_sensor_move(b->result->sensor, motion, b->arena, &b->result->sensor, &inner) != SR_OK)
         return sr_pbrt_wrap(b, e, &inner);
+    if (b->result->film.is_gbuffer) {
+        struct sr_motion *still = sr_arena_alloc(b->arena, sizeof *still);
+        if (!still || !sr_motion_make(&camera_to_world, &camera_to_world, 0, 1, still))
+            return sr_pbrt_no_memory(b);
+        b->result->film.camera = motion ? motion : still;
+        b->result->film.of_points = b->is_in_world ? NULL : b->result->film.camera;
+    }
     // what a sensor without colour curves of its own makes of the shutter: the picture times the seconds
     b->result->film.exposure_time = common->shutter_close - common->shutter_open;
     if (!(b->result->film.exposure_time > 0)) {
@@ -385,5 +407,7 @@ sr_status sr_pbrt_build_settings(struct sr_pbrt_build *b, enum sr_light_choice *
         status = build_options(b);
     if (status == SR_OK)
         status = build_sensor_medium(b);
+    // pbrt's lights are divided by the integral of ybar, 106.857 nm, and its buckets multiplied by it
+    b->result->film.bucket_scale = b->result->units == SR_UNITS_SI ? 1 / 683.0f : 106.856895f;
     return status == SR_OK ? build_integrator(b, choice) : status;
 }

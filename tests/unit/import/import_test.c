@@ -75,7 +75,12 @@ TEST(what_is_not_supported_says_so_and_what_is)
     expect_error("Camera \"pinhole\"\nWorldBegin",
                  "1:1: Camera \"pinhole\" is not supported yet; supported: perspective, orthographic, spherical, fisheye, realistic");
     expect_error("Camera \"realistic\"\nWorldBegin", "1:1: Camera \"realistic\": expected \"string lensfile\"");
-    expect_error("Film \"gbuffer\"\nWorldBegin", "1:1: Film \"gbuffer\" is not supported yet; supported: rgb");
+    expect_error("Film \"plate\"\nWorldBegin", "1:1: Film \"plate\" is not supported yet; supported: rgb, gbuffer, spectral");
+    expect_error("Film \"spectral\" \"float lambdamin\" 700 \"float lambdamax\" 400\nWorldBegin",
+                 "1:1: Film \"spectral\": lambdamin 700 nm must be less than lambdamax 400 nm");
+    expect_error("Film \"spectral\" \"integer nbuckets\" 0\nWorldBegin", "1:17: \"integer nbuckets\" of Film \"spectral\" is 0: expected 1 to 4096");
+    expect_error("Film \"gbuffer\" \"string coordinatesystem\" \"screen\"\nWorldBegin",
+                 "1:16: \"string coordinatesystem\" of Film \"gbuffer\" is \"screen\": expected camera|world");
     expect_error("WorldBegin\nMediumInterface \"fog\" \"\"\n" BALL,
                  "2:1: there is no medium named \"fog\"");
     expect_error("Film \"rgb\"\n\"string sensor\" \"nikon_d850\" WorldBegin",
