@@ -630,3 +630,41 @@ TEST(gltf_index_beyond_the_vertices)
     expect_error(rest, "m.gltf: /accessors/1: index 3 at place 2: there are 3 vertices");
     done();
 }
+
+/* ---- files of others ---- */
+
+TEST(gltf_sample_models_load)
+{
+    static const char *const models[] = {"AlphaBlendModeTest/glTF/AlphaBlendModeTest.gltf", "AnisotropyStrengthTest/glTF-Binary/AnisotropyStrengthTest.glb",
+                                         "BoxInterleaved/glTF/BoxInterleaved.gltf", "BoxVertexColors/glTF/BoxVertexColors.gltf",
+                                         "Cameras/glTF/Cameras.gltf", "NegativeScaleTest/glTF-Binary/NegativeScaleTest.glb",
+                                         "OrientationTest/glTF-Binary/OrientationTest.glb", "SimpleInstancing/glTF-Binary/SimpleInstancing.glb",
+                                         "SimpleSparseAccessor/glTF/SimpleSparseAccessor.gltf", "UnlitTest/glTF-Binary/UnlitTest.glb"};
+    for (size_t i = 0; i < sizeof models / sizeof *models; ++i) {
+        char name[256];
+        snprintf(name, sizeof name, "gltf/%s", models[i]);
+        struct sr_import_result result;
+        struct sr_error e = {0};
+        if (sr_import_pbrt(test_reference_file(name), NULL, &result, NULL, &e) != SR_OK)
+            test_fail(__FILE__, __LINE__, "%s", e.text);
+        EXPECT(sr_scene_count(result.scene).triangles > 0);
+        sr_import_result_free(&result);
+    }
+}
+
+/* A file cut anywhere is told to be wrong, or reads as a smaller scene; never more. */
+TEST(gltf_cut_files_are_refused)
+{
+    char *bytes;
+    size_t size;
+    struct sr_error e = {0};
+    static const struct sr_import_options none;
+    EXPECT_EQUAL_INT(sr_file_read(test_reference_file("gltf/BoxVertexColors/glTF/BoxVertexColors.gltf"), 1 << 24, &bytes, &size, &e), SR_OK);
+    for (int i = 0; i < 100; ++i) {
+        error = (struct sr_error){0};
+        EXPECT(sr_gltf_read_bytes("m.gltf", bytes, size * (size_t)i / 100, &none, &data, NULL, &d, &error) == SR_ERROR_INPUT && error.text[0]);
+        sr_pbrt_description_free(&d);
+    }
+    sr_free(bytes);
+    done();
+}
