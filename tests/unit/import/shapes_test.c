@@ -128,3 +128,34 @@ TEST(curves_do_not_shine)
     counts_of("WorldBegin\n" STRAND "\"normal N\" [0 1 0 0 1 0]\n");
     EXPECT(strstr(notes, "only ribbons have \"N\""));
 }
+
+/* A strip turns to the ray in the space of its object, at the ray's time: only then does the point lie on the ray. */
+TEST(curves_of_instances_and_moving_ones_face_the_ray)
+{
+    static const char *const scenes[] = {
+        "WorldBegin\nObjectBegin \"o\"\n" STRAND "ObjectEnd\nRotate 70 1 2 0\nScale 1 2 3\nTranslate 1 1 0\nObjectInstance \"o\"\n",
+        "WorldBegin\nActiveTransform EndTime\nRotate 90 1 0 0\nActiveTransform All\n" STRAND "\n",
+        "WorldBegin\nObjectBegin \"o\"\n" STRAND "ObjectEnd\nActiveTransform EndTime\nTranslate 2 0 0\nRotate 60 1 1 0\nActiveTransform All\nObjectInstance \"o\"\n",
+    };
+    for (size_t k = 0; k < sizeof scenes / sizeof *scenes; ++k) {
+        if (import(scenes[k]) != SR_OK)
+            test_fail(__FILE__, __LINE__, "%s", error.text);
+        struct sr_box b = sr_scene_bounds(result.scene);
+        struct sr_rng rng = sr_rng_seed(3, 1);
+        int met = 0;
+        for (int i = 0; i < 4000; ++i) {
+            sr_vec3 v = {sr_rng_float(&rng), sr_rng_float(&rng), sr_rng_float(&rng)}, e = sr_box_diagonal(b);
+            sr_vec3 aim = {b.lo.x + v.x * e.x, b.lo.y + v.y * e.y, b.lo.z + v.z * e.z};
+            sr_vec3 d = sr_warp_uniform_sphere((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)});
+            struct sr_ray ray = {.o = sr_mad(aim, -20, d), .d = d, .time = sr_rng_float(&rng), .t_max = INFINITY};
+            struct sr_hit hit;
+            if (!sr_raycast(result.scene, &ray, &hit))
+                continue;
+            ++met;
+            EXPECT_NEAR(sr_length(sr_sub(hit.point.p, sr_mad(ray.o, hit.t, d))), 0, 2e-3);
+            EXPECT_EQUAL_INT(hit.point.time == ray.time, 1);
+        }
+        EXPECT(met > 100);
+        sr_import_result_free(&result);
+    }
+}
