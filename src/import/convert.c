@@ -46,11 +46,22 @@ const char *sr_path_seen_from(struct sr_arena *arena, const char *from, const ch
     return sr_arena_printf(arena, "%s%s%s%s", up, rest, *rest ? "/" : "", slash ? slash + 1 : file);
 }
 
-const char *sr_convert_mesh_name(struct sr_arena *arena, const char *out, uint32_t number)
+const char *sr_convert_beside(struct sr_arena *arena, const char *out, const char *name, const char *ending)
 {
     const char *slash = strrchr(out, '/'), *dot = strrchr(out, '.');
     int length = dot && (!slash || dot > slash + 1) && dot > out ? (int)(dot - out) : (int)strlen(out);
-    return sr_arena_printf(arena, "%.*s-%04u.ply", length, out, (unsigned)number);
+    char *path = sr_arena_printf(arena, "%.*s-%.200s%s", length, out, name, ending);
+    for (char *c = path ? path + length + 1 : NULL; c && *c; ++c) // names within files are anybody's
+        if (strchr("/\\:*?\"<>|#", *c) || (unsigned char)*c < 32)
+            *c = '_';
+    return path;
+}
+
+const char *sr_convert_mesh_name(struct sr_arena *arena, const char *out, uint32_t number)
+{
+    char name[16];
+    snprintf(name, sizeof name, "%04u", (unsigned)number);
+    return sr_convert_beside(arena, out, name, ".ply");
 }
 
 /* What does not read back is not worth writing. */

@@ -310,3 +310,53 @@ TEST(upgrade_tells_what_it_approximates_and_where)
     EXPECT_SAYS(s->out, "\"string filename\" \"a.exr\"");
     EXPECT_SAYS(s->out, "PixelFilter \"box\"");
 }
+
+/* ---- other formats ---- */
+
+TEST(convert_obj_to_what_pbrt_knows_or_to_our_own)
+{
+    put_file("a.mtl", "newmtl shiny\nKd .6 .3 .1\nKs .5 .5 .5\nNs 98\nillum 2\nnewmtl gold\nKd 1 .8 .3\nPm .4\nPr .5\nnewmtl lamp\nKe 5 5 5\nnewmtl tex\nmap_Kd t.pfm\n");
+    put_file("t.pfm", "PF\n1 1\n-1\n............");
+    put_file("a.obj", "mtllib a.mtl\nv -1 0 0\nv 1 0 0\nv 1 1 0\nv -1 1 0\nvt 0 0\ng one\nusemtl shiny\nf 1 2 3 4\ng two\nusemtl gold\nf 1 2 3\nusemtl lamp\nf 4 3 1\nusemtl tex\nf 1/1 2/1 4/1\n");
+    run_expecting(0, "convert a.obj -o out.pbrt --quiet");
+    char *out = contents("out.pbrt");
+    EXPECT_SAYS(out, "MakeNamedMaterial \"shiny\"\n    \"string type\" \"coateddiffuse\"");
+    EXPECT_SAYS(out, "\"float roughness\" 0.14142"); // sqrt(2 / 100)
+    EXPECT_SAYS(out, "\"string materials\" [ \"gold, body\" \"gold, metal\" ]\n    \"float amount\" 0.4");
+    EXPECT_SAYS(out, "AreaLightSource \"diffuse\" \"rgb L\" [ 5 5 5 ]");
+    EXPECT_SAYS(out, "#@ Name \"two\"");
+    EXPECT_SAYS(out, "\"string filename\" \"t.pfm\"");
+    sr_free(out);
+    run_expecting(0, "render out.pbrt --spp 1 --resolution 8,6 -o a.pfm --quiet");
+    run_expecting(0, "convert out.pbrt -o again.pbrt --quiet");
+    expect_same_files("out.pbrt", "again.pbrt", "not the same the second time");
+    run_expecting(0, "convert a.obj -o own.pbrt --for steradian --quiet");
+    out = contents("own.pbrt");
+    EXPECT_SAYS(out, "\"openpbr\"");
+    sr_free(out);
+    run_expecting(0, "render own.pbrt --spp 1 --resolution 8,6 -o a.pfm --quiet");
+    run_expecting(2, "convert a.obj -o -"); // where would meshes and the sky go?
+}
+
+/* Every model becomes text without a word that pbrt does not know. */
+TEST(convert_gltf_models_to_what_pbrt_knows)
+{
+    static const char *const models[] = {"AlphaBlendModeTest", "BoxVertexColors", "NormalTangentTest", "TextureTransformTest", "TransmissionTest"};
+    static const char *const ours[] = {"\"openpbr\"", "\"texelmap\"", "\"attribute\"", "\"product\"", "\"threshold\"", "normalx"};
+    for (size_t i = 0; i < sizeof models / sizeof *models; ++i) {
+        char name[512], words[5000];
+        snprintf(name, sizeof name, "gltf/%s/glTF/%s.gltf", models[i], models[i]);
+        if (access(SR_TEST_REFERENCE_DIR "/gltf", R_OK) == 0 && strcmp(models[i], "NormalTangentTest") != 0 && strcmp(models[i], "TransmissionTest") != 0)
+            test_reference_file(name);
+        else
+            snprintf(name, sizeof name, "gltf/%s/glTF-Binary/%s.glb", models[i], models[i]);
+        snprintf(words, sizeof words, "convert %s -o model.pbrt --quiet", test_reference_file(name));
+        run_expecting(0, words);
+        char *text = contents("model.pbrt");
+        for (size_t k = 0; k < sizeof ours / sizeof *ours; ++k)
+            if (strstr(text, ours[k]))
+                test_fail(__FILE__, __LINE__, "%s: %s in what pbrt should read", models[i], ours[k]);
+        sr_free(text);
+        run_expecting(0, "render model.pbrt --spp 1 --resolution 16,12 -o a.pfm --quiet");
+    }
+}

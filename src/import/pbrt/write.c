@@ -47,16 +47,10 @@ static void print_words(struct writer *w, const char *word, const char *a, const
 /* An image that lay in the file is written beside the text. */
 static const char *unpack(struct writer *w, const struct sr_pbrt_memory_file *file)
 {
-    const char *stem = strrchr(file->name, '/'), *dot = strrchr(w->o->out, '.'), *slash = strrchr(w->o->out, '/');
-    stem = stem ? stem + 1 : file->name;
-    int length = dot && (!slash || dot > slash) ? (int)(dot - w->o->out) : (int)strlen(w->o->out);
-    char *path = sr_arena_printf(&w->data, "%.*s-%s", length, w->o->out, stem);
-    for (char *c = path ? path + length + 1 : NULL; c && *c; ++c) // names within files are anybody's
-        if (*c == '/' || *c == '\\' || *c == ':' || (unsigned char)*c < 32)
-            *c = '_';
+    const char *stem = strrchr(file->name, '/'), *path = sr_convert_beside(&w->data, w->o->out, stem ? stem + 1 : file->name, "");
     if (!path || sr_file_write(path, file->data, file->size, w->error) != SR_OK)
         return NULL;
-    slash = strrchr(path, '/');
+    const char *slash = strrchr(path, '/');
     return slash ? slash + 1 : path;
 }
 
@@ -157,7 +151,12 @@ static sr_status print_named_things(struct writer *w)
     }
     for (size_t i = 0; i < w->d.textures.count; ++i) {
         struct sr_pbrt_texture *t = SR_PBRT_AT(w->d.textures, struct sr_pbrt_texture, i);
-        if (move_files(w, &t->entity.params) != SR_OK)
+        bool is_made = false;
+        if (!w->o->for_steradian && sr_pbrt_is_normal_texture(&w->d, t->entity.name))
+            continue; // the material has a normal map instead
+        if (!w->o->for_steradian && sr_pbrt_closest_texture(&w->d, &w->data, w->path, w->o->out, t, &is_made, w->error) != SR_OK)
+            return w->error->status;
+        if (!is_made && move_files(w, &t->entity.params) != SR_OK)
             return w->error->status;
         if (is_placed(w, t->entity.transform))
             begin_block(w, t->entity.transform);
@@ -167,7 +166,7 @@ static sr_status print_named_things(struct writer *w)
     }
     for (size_t i = 0; i < w->d.named_materials.count; ++i) {
         struct sr_pbrt_entity *e = SR_PBRT_AT(w->d.named_materials, struct sr_pbrt_entity, i);
-        if (move_files(w, &e->params) != SR_OK)
+        if ((!w->o->for_steradian && sr_pbrt_closest_normals(&w->d, e, w->error) != SR_OK) || move_files(w, &e->params) != SR_OK)
             return w->error->status;
         if (!w->o->for_steradian && sr_pbrt_closest_material(&w->d, e, w->out, w->error) != SR_OK)
             return w->error->status;
@@ -179,6 +178,9 @@ static sr_status print_named_things(struct writer *w)
 
 static sr_status print_lights(struct writer *w)
 {
+    for (size_t i = 0; i < w->d.area_lights.count; ++i) // several shapes may be lit by one
+        if (move_files(w, &SR_PBRT_AT(w->d.area_lights, struct sr_pbrt_entity, i)->params) != SR_OK)
+            return w->error->status;
     for (size_t i = 0; i < w->d.lights.count; ++i) {
         struct sr_pbrt_light *l = SR_PBRT_AT(w->d.lights, struct sr_pbrt_light, i);
         if (move_files(w, &l->entity.params) != SR_OK)
@@ -211,8 +213,6 @@ static sr_status print_shape(struct writer *w, struct sr_pbrt_shape *s)
         print_words(w, "NamedMaterial", s->material.name, NULL, NULL, NULL);
     if (s->area_light1) {
         struct sr_pbrt_entity *light = SR_PBRT_AT(w->d.area_lights, struct sr_pbrt_entity, s->area_light1 - 1);
-        if (move_files(w, &light->params) != SR_OK)
-            return w->error->status;
         print_words(w, "AreaLightSource", light->model, NULL, NULL, &light->params);
     }
     if (s->name) {
