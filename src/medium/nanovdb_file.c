@@ -343,11 +343,14 @@ static sr_status read_map(const struct tree *t, pnanovdb_grid_handle_t grid)
 {
     struct sr_sparse *g = t->out;
     const pnanovdb_map_handle_t map = pnanovdb_grid_get_map(t->buf, grid);
+    const pnanovdb_coord_t least = pnanovdb_root_get_bbox_min(t->buf, t->root), most = pnanovdb_root_get_bbox_max(t->buf, t->root);
     bool is_finite = true;
+    memcpy(g->least, &least, sizeof g->least);
+    memcpy(g->most, &most, sizeof g->most);
     for (uint32_t i = 0; i < 3; ++i) {
         g->lo[i] = pnanovdb_grid_get_world_bbox(t->buf, grid, i);
         g->hi[i] = pnanovdb_grid_get_world_bbox(t->buf, grid, 3 + i);
-        if (!(g->lo[i] < g->hi[i]) || !isfinite(g->hi[i] - g->lo[i]))
+        if (g->least[i] > g->most[i] || !(g->lo[i] < g->hi[i]) || !isfinite(g->hi[i] - g->lo[i]))
             return refuse(t->file, "its grid has no bounding box");
         g->to_index[i][3] = 0;
         for (uint32_t j = 0; j < 3; ++j) {

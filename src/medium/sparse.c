@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Looking into a sparse grid (sparse.h): three steps down, one for all eight neighbours where they share a leaf. The layout is that of
- * OpenVDB's leaves and lower nodes (K. Museth, VDB: High-Resolution Sparse Volumes with Dynamic Topology, 2013), under one table. */
+ * OpenVDB's leaves and lower nodes (K. Museth, VDB: High-Resolution Sparse Volumes with Dynamic Topology, 2013), under one table.
+ * Files hold values also where nothing is active, beyond the box of what is: those are not meant. */
 #include "medium/sparse.h"
 
 /* The leaf around (i, j, k), or NULL, and a constant. */
@@ -18,8 +19,15 @@ static inline const float *leaf_at(const struct sr_sparse *g, int32_t i, int32_t
     return NULL;
 }
 
+static inline bool is_in_box(const struct sr_sparse *g, int32_t i, int32_t j, int32_t k)
+{
+    return i >= g->least[0] && i <= g->most[0] && j >= g->least[1] && j <= g->most[1] && k >= g->least[2] && k <= g->most[2];
+}
+
 static float value_at(const struct sr_sparse *g, int32_t i, int32_t j, int32_t k)
 {
+    if (!is_in_box(g, i, j, k))
+        return 0;
     float constant;
     const float *leaf = leaf_at(g, i, j, k, &constant);
     return leaf ? leaf[(i & 7) << 6 | (j & 7) << 3 | (k & 7)] : constant;
@@ -29,10 +37,10 @@ float sr_sparse_at(const struct sr_sparse *g, sr_vec3 index)
 {
     const float most = 0x1p30f;
     if (!(fabsf(index.x) < most && fabsf(index.y) < most && fabsf(index.z) < most))
-        return g->background;
+        return 0;
     float x = floorf(index.x), y = floorf(index.y), z = floorf(index.z), v[8], constant;
     int32_t i = (int32_t)x, j = (int32_t)y, k = (int32_t)z;
-    if ((i & 7) < 7 && (j & 7) < 7 && (k & 7) < 7) {
+    if ((i & 7) < 7 && (j & 7) < 7 && (k & 7) < 7 && is_in_box(g, i, j, k) && is_in_box(g, i + 1, j + 1, k + 1)) {
         const float *leaf = leaf_at(g, i, j, k, &constant);
         if (!leaf)
             return constant;
@@ -90,16 +98,24 @@ static float largest_of_block(const struct sr_sparse *g, const struct sr_sparse_
 float sr_sparse_largest(const struct sr_sparse *g, const double lo[3], const double hi[3])
 {
     int64_t first[3], last[3], from[3], to[3];
-    bool is_within = true;
+    bool is_in_box = true, is_in_table = true, is_any = true;
     for (int k = 0; k < 3; ++k) {
-        const double most = 0x1p40;
-        first[k] = (int64_t)fmin(fmax(floor(lo[k]), -most), most);
-        last[k] = (int64_t)fmin(fmax(ceil(hi[k]), -most), most);
+        const double far = 0x1p40;
+        int64_t lower = (int64_t)fmin(fmax(floor(lo[k]), -far), far), upper = (int64_t)fmin(fmax(ceil(hi[k]), -far), far);
+        int64_t table_end = (int64_t)g->first[k] + g->n[k] - 1;
+        first[k] = lower > g->least[k] ? lower : g->least[k];
+        last[k] = upper < g->most[k] ? upper : g->most[k];
+        is_any &= first[k] <= last[k];
+        is_in_box &= first[k] == lower && last[k] == upper;
         from[k] = first[k] >> 7 > g->first[k] ? first[k] >> 7 : g->first[k];
-        to[k] = last[k] >> 7 < (int64_t)g->first[k] + g->n[k] - 1 ? last[k] >> 7 : (int64_t)g->first[k] + g->n[k] - 1;
-        is_within &= from[k] == first[k] >> 7 && to[k] == last[k] >> 7;
+        to[k] = last[k] >> 7 < table_end ? last[k] >> 7 : table_end;
+        is_in_table &= from[k] == first[k] >> 7 && to[k] == last[k] >> 7;
     }
-    float largest = is_within ? -INFINITY : g->background;
+    if (!is_any)
+        return 0;
+    float largest = is_in_table ? -INFINITY : g->background;
+    if (!is_in_box)
+        largest = sr_max(largest, 0);
     for (int64_t z = from[2]; z <= to[2]; ++z)
         for (int64_t y = from[1]; y <= to[1]; ++y)
             for (int64_t x = from[0]; x <= to[0]; ++x) {

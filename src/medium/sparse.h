@@ -16,12 +16,13 @@ struct sr_sparse_leaf {
 struct sr_sparse {
     double to_index[3][4]; // from the medium's space
     double lo[3], hi[3];   // the box around what is there, in the medium's space [m]
+    int32_t least[3], most[3]; // and in index space, both included; outside all is 0
     int32_t first[3], n[3]; // of the table, in blocks
     const int32_t *table;  // of blocks, x fastest
     const struct sr_sparse_block *blocks;
     const struct sr_sparse_leaf *leaves;
     const float *tiles;
-    float background; // outside of the table
+    float background; // outside of the table, within the box
 };
 
 /* The grid of that name of a NanoVDB file. When there is none: with `must` an error that tells what there is, else a grid without

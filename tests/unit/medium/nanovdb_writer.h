@@ -16,6 +16,7 @@ struct nanovdb_spec {
     int lo[3], hi[3]; // both included
     float (*value)(int i, int j, int k);
     bool has_tiles;   // leaves that are all of one value become constants of their parents
+    float elsewhere;  // what nodes hold beyond the box
     double matrix[9], shift[3]; // index to world
     bool has_checksum;
 };
@@ -120,8 +121,10 @@ static inline size_t vdb_node(struct nanovdb_file *f, const struct nanovdb_spec 
     size_t at = vdb_add(f, is_upper ? VDB_UPPER_B : VDB_LOWER_B), mask = is_upper ? 4128 : 544, table = is_upper ? 8256 : 1088;
     for (int n = 0; n < side * side * side; ++n) {
         const int child[3] = {c[0] + n / side / side * size, c[1] + n / side % side * size, c[2] + n % side * size};
-        if (vdb_is_empty(s, child, size))
+        if (vdb_is_empty(s, child, size)) {
+            vdb_put(f->data + at + table + 8 * (size_t)n, &s->elsewhere, 4);
             continue;
+        }
         float first = vdb_value(s, child[0], child[1], child[2]);
         if (s->has_tiles && vdb_is_constant(s, child, size)) {
             vdb_put(f->data + at + table + 8 * (size_t)n, &first, 4);
@@ -176,6 +179,8 @@ static inline void vdb_header(uint8_t *d, const struct nanovdb_spec *s, size_t g
     vdb_put32(d + 632, 2); // fog
     vdb_put32(d + 636, s->type);
     vdb_put64(d + 672 + 24, 64); // the root follows the tree
+    vdb_put(d + VDB_ROOT, s->lo, 12);
+    vdb_put(d + VDB_ROOT + 12, s->hi, 12);
 }
 
 /* Adds one grid as a segment of its own. */
