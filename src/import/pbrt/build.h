@@ -68,6 +68,7 @@ struct sr_pbrt_build {
     struct sr_medium *media;                  // one for each of the description; without model: not made yet
     bool has_told_normalisation;              // that emission spectra are scaled to luminance 1
     bool has_warned_units;                    // that a spectrum may be meant otherwise
+    bool has_warned_curve_normals;            // that only ribbons have them
 };
 
 /* What the values of an entity are for, where its table alone does not say it. */
@@ -122,6 +123,11 @@ sr_status sr_pbrt_medium(struct sr_pbrt_build *b, const char *name, struct sr_lo
 
 /* uncertainties.c: those that the file declares; the one that the options name is added to its parameter, before anything is built. */
 sr_status sr_pbrt_uncertainties(struct sr_pbrt_build *b);
+
+/* curves.c: the shape of the run of curves that begins at s, in that placement; *run: how many directives it is made of. */
+bool sr_pbrt_is_curve(const struct sr_pbrt_shape *s);
+sr_status sr_pbrt_curves(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, const struct sr_shape_placement *placement, struct sr_shape *shape,
+                         size_t *run);
 
 /* displace.c: the mesh with vertices moved along their normals, after its edges have been made shorter than edge_length [m]. */
 sr_status sr_pbrt_displace(struct sr_ply_mesh *ply, const struct sr_transform *object_to_world, float edge_length, struct sr_texture displacement,
