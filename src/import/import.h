@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Words and files into scenes: pbrt-v4 files, and the PLY meshes and images that they name. */
+/* Words and files into scenes: pbrt-v4 files and the meshes and images that they name; glTF and others by their endings. */
 #ifndef SR_IMPORT_IMPORT_H
 #define SR_IMPORT_IMPORT_H
 
@@ -57,7 +57,7 @@ struct sr_import_result {
     double read_s; // [s] reading and describing, without building
 };
 
-/* Reads a scene and finishes it. path "-" is standard input. On failure the result is empty and the error says what, where
+/* Reads a scene of any format (describe.h) and finishes it. path "-" is standard input, pbrt's. On failure the result is empty and the error says what, where
  * (file:line:column) and what was expected. */
 sr_status sr_import_pbrt(const char *path, const struct sr_import_options *options, struct sr_import_result *result,
                          struct sr_log *log, struct sr_error *error);
