@@ -41,6 +41,14 @@ MUTANTS = [
            ".d = sr_sub(s->p, o), .time = x->time, .t_max = SHADOW_SHARE / 2}", "validate screened_0.75"),
     Mutant("light from below the horizon is not cut off", "bsdf/bsdf.h", "bool is_reflected = sr_same_hemisphere(wo, wi);", "bool is_reflected = true;",
            "analytic sources* [B6]"),
+    # media
+    Mutant("light samples compete with directions as if fog hid nothing from them", "integrator/flight.c", "c->r *= sr_spectrum_exp(SR_BLACK + tau);", ";",
+           "analytic the_plain_twin*"),
+    Mutant("wavelengths are not weighed by what the others would have drawn", "integrator/flight.c", "c->q *= sigma_t * T;", ";", "analytic wavelengths_together*"),
+    Mutant("null collisions take light away", "integrator/flight.c", "c->f *= sr_spectrum_select(null > 0.0f, null, SR_BLACK) * P;",
+           "c->f *= 0.9f * sr_spectrum_select(null > 0.0f, null, SR_BLACK) * P;", "analytic smoke_is*"),
+    Mutant("shadow rays do not change their medium at interfaces", "integrator/flight.c", "medium = sr_hit_medium(&hit, l->wi, medium);", ";",
+           "analytic media_are* [H3r]"),
     # lights
     Mutant("light falls off with the distance, not with its square", "light/point.c", "sr_spd_eval(&m->I, w->lambda) / r2", "sr_spd_eval(&m->I, w->lambda) / r",
            "unit_light *1000_lm*"),
