@@ -12,6 +12,7 @@
  * "MIS compensation", 2019): p ~ max(f - mean(f), 0); where it is 0 light still comes, found with weight 1 by the surface's
  * own choice. A uniform sky is never drawn at all, for the same reason. Estimators without such a choice must not use it. */
 #include "light/infinite.h"
+#include "light/pixels.h"
 
 enum { MOST_CELLS = 1 << 22 }; // 80 MiB
 
@@ -184,12 +185,19 @@ sr_spectrum sr_infinite_Le(const struct sr_infinite *m, sr_vec3 wi, const struct
     return cell_Le(m, look_up(m, square(m, wi, &jacobian)), w);
 }
 
-struct sr_rgb sr_infinite_texel(const struct sr_infinite *m, sr_vec3 wi)
+float sr_infinite_blurred_grey(const struct sr_infinite *m, sr_vec3 wi)
 {
     const struct sr_texels *t = &m->common.texels;
-    float jacobian;
+    float jacobian, sum = 0;
     sr_vec2 p = square(m, wi, &jacobian);
-    return sr_light_texel(t, (uint32_t)texel_index(p.x, t->width), (uint32_t)texel_index(p.y, t->height));
+    float x = sr_max(p.x * (float)t->width - 0.5f, 0), y = sr_max(p.y * (float)t->height - 0.5f, 0);
+    uint32_t i = (uint32_t)x, j = (uint32_t)y;
+    float dx = x - (float)i, dy = y - (float)j;
+    for (uint32_t k = 0; k < 4; ++k) {
+        uint32_t ix = i + (k & 1), iy = j + (k >> 1);
+        sum += (k & 1 ? dx : 1 - dx) * (k >> 1 ? dy : 1 - dy) * sr_light_grey(t, ix < t->width ? ix : t->width - 1, iy < t->height ? iy : t->height - 1);
+    }
+    return sum;
 }
 
 static sr_spectrum Le(const void *self, const struct sr_point *there, sr_vec3 w, const struct sr_wavelengths *wavelengths)

@@ -35,7 +35,7 @@ struct sr_infinite {
 extern const struct sr_param sr_infinite_params[];
 sr_status sr_infinite_prepare(void *self, struct sr_arena *arena, struct sr_error *error);
 sr_spectrum sr_infinite_Le(const struct sr_infinite *m, sr_vec3 wi, const struct sr_wavelengths *w); // that arrives from wi
-struct sr_rgb sr_infinite_texel(const struct sr_infinite *m, sr_vec3 wi); // of the image
+float sr_infinite_blurred_grey(const struct sr_infinite *m, sr_vec3 wi); // of the image, between the texels' centres
 
 static inline bool sr_infinite_is_image(const struct sr_infinite *m)
 {
