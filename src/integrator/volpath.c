@@ -32,12 +32,12 @@ static struct walk walk_of(const struct sr_path *path, const struct sr_scene *sc
                          path->subsurface && sr_scene_has_subsurface(scene)};
 }
 
-// dispersion has left the first wavelength alone: it counts for all, and no other would have drawn what is still to come
+// dispersion has left the first wavelength alone: it counts for all, since no other would have drawn what is still to come
 static void keep_first(struct sr_carried *c)
 {
     sr_spectrum *all[] = {&c->f, &c->q, &c->r};
     for (int i = 0; i < 3; ++i)
-        *all[i] = (sr_spectrum){SR_LAMBDA_COUNT * (*all[i])[0]};
+        *all[i] = (sr_spectrum){(*all[i])[0]};
 }
 
 /* Light that arrives straight from a light at x, which is in `medium` there. */

@@ -44,7 +44,7 @@ MUTANTS = [
     # media
     Mutant("light samples compete with directions as if fog hid nothing from them", "integrator/flight.c", "c->r *= sr_spectrum_exp(SR_BLACK + tau);", ";",
            "analytic glowing_walls*"),
-    Mutant("the density of a scattering is the first wavelength's for all", "integrator/flight.c", "c->q *= sigma_t * T;", "c->q *= sigma_t[0] * T;", "analytic glowing_walls*"),
+    Mutant("collisions absorb nothing", "integrator/flight.c", "c->f *= at->sigma_s * T;", "c->f *= sigma_t * T;", "analytic media_are* [H6.0.9]"),
     Mutant("null collisions take light away", "integrator/flight.c", "c->f *= sr_spectrum_select(null > 0.0f, null, SR_BLACK) * P;",
            "c->f *= 0.9f * sr_spectrum_select(null > 0.0f, null, SR_BLACK) * P;", "analytic smoke_is*"),
     Mutant("shadow rays do not change their medium at interfaces", "integrator/flight.c", "medium = sr_hit_medium(&hit, l->wi, medium);", ";",
