@@ -56,7 +56,9 @@ void sr_film_response(const struct sr_film_settings *s, float rgb_from_xyz[3][3]
 {
     const struct sr_colour_space *space = sr_colour_space(s->space);
     double balance[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    if (s->white_balance > 0) {
+    if (s->camera1) {
+        sr_film_camera_matrix(s->camera1, s->white_balance > 0 ? (double)s->white_balance : 6500, s->space, balance);
+    } else if (s->white_balance > 0) {
         double source[2];
         sr_daylight_xy((double)s->white_balance, source);
         sr_white_balance(source, space->xy[3], balance);

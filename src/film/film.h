@@ -51,6 +51,7 @@ struct sr_film_settings {
     float exposure_time;               // [s] shutter close - open
     float white_balance;               // [K]; 0: none
     float max_component;               // infinity: no clamping; of the sensor's values, before white balance
+    uint32_t camera1;                  // number from 1 of the camera whose sensor it is; 0: the CIE's observer of 1931
     uint32_t buckets;                  // of wavelengths that are kept apart; 0: none
     float lambda_min, lambda_max;      // [nm] that they share evenly
     float bucket_scale;                // of radiance as scenes have it: 1/683 gives W m^-2 sr^-1 nm^-1
@@ -59,7 +60,12 @@ struct sr_film_settings {
     const struct sr_motion *of_points; // the same for P, N and Ns; NULL: they are in the world
     const char *filename;
 };
-/* RGB of the output space from XYZ of the path: white balance and imaging ratio = exposure_time * iso / 100 included. */
+/* Cameras by number, NULL where they end; what a sensor takes of a path; and what is made of that, fitted to a chart under light of
+ * the white balance's temperature [K]. */
+const char *sr_film_camera_name(int i);
+void sr_film_camera_values(uint32_t camera1, sr_spectrum L, const struct sr_wavelengths *w, float values[3]);
+void sr_film_camera_matrix(uint32_t camera1, double T, enum sr_colour_space_id space, double xyz_from_camera[3][3]);
+/* RGB of the output space from XYZ of the path, or from the camera's values: white balance and imaging ratio = exposure_time * iso / 100 included. */
 void sr_film_response(const struct sr_film_settings *s, float rgb_from_xyz[3][3]);
 
 /* ---- a film ---- */

@@ -15,7 +15,7 @@ struct response {
     struct sr_lambda_law law;
     uint32_t buckets;
     float lambda_min, lambda_step; // [nm] of a bucket
-    float bucket_scale; // with the imaging ratio
+    float imaging_ratio, bucket_scale; // the latter with the former
     bool (*ray)(const void *sensor, sr_vec2 raster, sr_vec2 u_lens, float u_time, struct sr_sensor_ray *out);
 };
 
@@ -74,7 +74,7 @@ static struct response response_of(const struct sr_render_job *job)
     bool is_bare = sensor->bare_ray && !sr_scene_has_footprints(job->scene) && !job->film.is_gbuffer;
     const struct sr_film_settings *f = &job->film;
     struct response r = {.law = sr_lambda_law(job->lambda), .buckets = f->buckets, .lambda_min = f->lambda_min,
-                         .lambda_step = f->buckets ? (f->lambda_max - f->lambda_min) / (float)f->buckets : 0, .bucket_scale = f->bucket_scale * f->exposure_time * f->iso / 100, .ray = is_bare ? sensor->bare_ray : sensor->ray};
+                         .lambda_step = f->buckets ? (f->lambda_max - f->lambda_min) / (float)f->buckets : 0, .imaging_ratio = f->exposure_time * f->iso / 100, .bucket_scale = f->bucket_scale * f->exposure_time * f->iso / 100, .ray = is_bare ? sensor->bare_ray : sensor->ray};
     sr_film_response(&job->film, r.rgb_from_xyz);
     return r;
 }
@@ -125,6 +125,22 @@ static void fill_gbuffer(const struct sr_render_job *job, const struct sr_path_s
     first->ns = sr_normalize(sr_transform_normal(&t, first->ns));
 }
 
+/* What the sensor takes, and where the film is to be kept from bright samples, less of it. */
+static void sense(const struct sr_render_job *job, const struct response *r, sr_spectrum L, const struct sr_wavelengths *w, float weight, float values[3],
+                  float *share)
+{
+    if (SR_UNLIKELY(job->film.camera1)) {
+        sr_film_camera_values(job->film.camera1, L, w, values);
+    } else {
+        struct sr_xyz xyz = sr_spectrum_to_xyz(L, w);
+        values[0] = xyz.x, values[1] = xyz.y, values[2] = xyz.z;
+    }
+    *share = 1;
+    float largest = weight * r->imaging_ratio * sr_max(values[0], sr_max(values[1], values[2]));
+    if (SR_UNLIKELY(largest > job->film.max_component))
+        *share = job->film.max_component / largest;
+}
+
 static bool sample_pixel(const struct sr_render_job *job, const struct response *response, uint32_t x, uint32_t y, const struct sr_sampler *sampler,
                          float rgb[3], double *buckets, struct sr_first_hit *first, struct sr_worker *worker)
 {
@@ -149,18 +165,14 @@ static bool sample_pixel(const struct sr_render_job *job, const struct response 
                                   .medium = sr_scene_sensor_medium(job->scene)};
     struct sr_hit hit;
     sr_spectrum L = job->integrator.model->L(job->integrator.self, job->scene, &start, sampler, &w, first ? &hit : NULL, worker);
-    struct sr_xyz xyz = sr_spectrum_to_xyz(L, &w);
-    weight *= view.weight;
+    float v[3], kept;
+    sense(job, response, L, &w, view.weight, v, &kept);
+    weight *= view.weight * kept;
     const float(*m)[3] = response->rgb_from_xyz;
     for (int c = 0; c < 3; ++c)
-        rgb[c] = weight * (m[c][0] * xyz.x + m[c][1] * xyz.y + m[c][2] * xyz.z);
-    float largest = sr_max(rgb[0], sr_max(rgb[1], rgb[2]));
-    if (largest > job->film.max_component)
-        for (int c = 0; c < 3; ++c)
-            rgb[c] *= job->film.max_component / largest;
-
+        rgb[c] = weight * (m[c][0] * v[0] + m[c][1] * v[1] + m[c][2] * v[2]);
     if (SR_UNLIKELY(buckets))
-        add_to_buckets(response, L, &w, weight * (largest > job->film.max_component ? job->film.max_component / largest : 1), buckets);
+        add_to_buckets(response, L, &w, weight, buckets);
 
     if (first) {
         *first = (struct sr_first_hit){.is_hit = hit.material != NULL};
@@ -203,16 +215,12 @@ static void add_splat(void *user, sr_vec2 raster, sr_spectrum gain, const struct
 {
     struct splatting *s = user;
     const struct sr_render_job *job = s->run->job;
-    struct sr_xyz xyz = sr_spectrum_to_xyz(gain, w);
+    float rgb[3], v[3], kept;
+    // one path goes with a sample of one pixel: that share counts where values are clamped
+    sense(job, &s->run->response, gain, w, 1 / s->target.pixels, v, &kept);
     const float(*m)[3] = s->run->response.rgb_from_xyz;
-    float rgb[3];
     for (int c = 0; c < 3; ++c)
-        rgb[c] = m[c][0] * xyz.x + m[c][1] * xyz.y + m[c][2] * xyz.z;
-    // one path goes with a sample of one pixel: that share counts where components are clamped
-    float largest = sr_max(rgb[0], sr_max(rgb[1], rgb[2])) / s->target.pixels;
-    if (largest > job->film.max_component)
-        for (int c = 0; c < 3; ++c)
-            rgb[c] *= job->film.max_component / largest;
+        rgb[c] = kept * (m[c][0] * v[0] + m[c][1] * v[1] + m[c][2] * v[2]);
     sr_film_splat(s->run->film, &job->filter, s->group, raster, rgb);
 }
 

@@ -158,3 +158,55 @@ TEST(spectra_do_not_depend_on_threads)
     EXPECT(sum[0] == sum[1] && sum[0] == sum[2]);
     EXPECT_RELATIVE(sum[3], sum[0], 1e-2);
 }
+
+/* What cameras make of a perfect white, under their own white balance and others, and of a chart's worth of colours. Least squares
+ * leave a few per cent; the luminance of white is nearly right, and daylight is white. */
+TEST(cameras_see_white_as_white)
+{
+    int n = 0;
+    for (; sr_film_camera_name(n); ++n) {
+        static const double temperatures[] = {3200, 5000, 6500, 9000};
+        for (int t = 0; t < 4; ++t) {
+            double m[3][3];
+            sr_film_camera_matrix((uint32_t)n + 1, temperatures[t], SR_SRGB, m);
+            for (int i = 0; i < 3; ++i)
+                for (int j = 0; j < 3; ++j)
+                    EXPECT(isfinite(m[i][j]) && fabs(m[i][j]) < 10);
+        }
+        struct world w = world_of("LookAt 0 0 -5  0 0 0  0 1 0 Camera \"perspective\" \"float shutterclose\" 0.5\nIntegrator \"path\"\n"
+                                  "Sampler \"zsobol\" \"integer pixelsamples\" 1024\nFilm \"rgb\" \"integer xresolution\" 2 \"integer yresolution\" 2 \"float iso\" 200\n"
+                                  "\"string sensor\" \"%s\"\nWorldBegin\nLightSource \"infinite\" \"spectrum L\" \"stdillum-D65\"\n", sr_film_camera_name(n));
+        struct sr_film *film;
+        struct sr_image *image = picture(&w, &film);
+        double rgb[3] = {channel(image, "R", 0, 0), channel(image, "G", 0, 0), channel(image, "B", 0, 0)};
+        printf("  %-20s %.4f %.4f %.4f\n", sr_film_camera_name(n), rgb[0], rgb[1], rgb[2]);
+        for (int c = 0; c < 3; ++c) // 0.5 s at ISO 200: the ratio is 1
+            EXPECT_NEAR(rgb[c], 1, is_slow_build() ? 0.3 : 0.06);
+        sr_image_free(image);
+        sr_film_destroy(film);
+        world_free(&w);
+    }
+    EXPECT_EQUAL_INT(n, 17);
+}
+
+/* The values are the integral of L times the curve: against a sum over the wavelengths, of a lamp at 530 nm alone. */
+TEST(sensors_integrate_their_curves)
+{
+    struct sr_lambda_range all = {SR_LAMBDA_MIN, SR_LAMBDA_MAX};
+    double sum[3] = {0};
+    enum { N = 20000 };
+    for (int i = 0; i < N; ++i) {
+        struct sr_wavelengths w = sr_wavelengths_sample(all, ((float)i + 0.5f) / N);
+        sr_spectrum L = SR_BLACK;
+        for (int k = 0; k < SR_LAMBDA_COUNT; ++k)
+            L[k] = w.lambda[k] >= 520 && w.lambda[k] < 530;
+        float v[3];
+        sr_film_camera_values(1, L, &w, v);
+        for (int c = 0; c < 3; ++c)
+            sum[c] += (double)v[c] / N;
+    }
+    // the Canon EOS 100D at 520 and 530 nm, in the table's linear piece
+    static const double expected[3] = {10 * (0.10054 + 0.09959) / 2, 10 * (1.0 + 0.83768) / 2, 10 * (0.26207 + 0.14686) / 2};
+    for (int c = 0; c < 3; ++c)
+        EXPECT_RELATIVE(sum[c], expected[c], 2e-3);
+}

@@ -97,7 +97,7 @@ static const char *default_filename(struct sr_pbrt_build *b)
 static sr_status build_film(struct sr_pbrt_build *b)
 {
     const struct sr_pbrt_entity *e = &b->d->film;
-    const char *const supported[] = {"rgb", "gbuffer", "spectral"}, *const sensors[] = {"cie1931"};
+    const char *const supported[] = {"rgb", "gbuffer", "spectral"};
     struct film f = {0};
     bool is_gbuffer = strcmp(e->model, "gbuffer") == 0, is_spectral = strcmp(e->model, "spectral") == 0;
     if (strcmp(e->model, "rgb") != 0 && !is_gbuffer && !is_spectral)
@@ -105,9 +105,17 @@ static sr_status build_film(struct sr_pbrt_build *b)
     sr_status status = sr_pbrt_bind(b, film_params, e, plain, &f);
     if (status != SR_OK)
         return status;
-    if (strcmp(f.sensor, sensors[0]) != 0)
-        return sr_pbrt_fail(b->d, sr_pbrt_find(&e->params, "sensor")->where, b->error, SR_ERROR_INPUT,
-                            "sensor \"%s\" is not supported yet; supported: %s", f.sensor, sensors[0]);
+    uint32_t camera1 = 0;
+    if (strcmp(f.sensor, "cie1931") != 0) {
+        struct sr_pbrt_suggestion near = {.word = f.sensor};
+        char buffer[160];
+        while (sr_film_camera_name((int)camera1) && strcmp(sr_film_camera_name((int)camera1), f.sensor) != 0)
+            sr_pbrt_suggest(&near, sr_film_camera_name((int)camera1++));
+        if (!sr_film_camera_name((int)camera1))
+            return sr_pbrt_fail(b->d, sr_pbrt_find(&e->params, "sensor")->where, b->error, SR_ERROR_INPUT,
+                                "there is no sensor \"%s\": expected cie1931 or the name of a camera%s", f.sensor, sr_pbrt_suggestion_text(&near, buffer));
+        ++camera1;
+    }
     if (is_spectral && !(f.lambda_min < f.lambda_max))
         return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "Film \"spectral\": lambdamin %g nm must be less than lambdamax %g nm", (double)f.lambda_min,
                             (double)f.lambda_max);
@@ -130,6 +138,7 @@ static sr_status build_film(struct sr_pbrt_build *b)
                                                 .exposure_time = 1,
                                                 .white_balance = f.white_balance,
                                                 .max_component = f.max_component,
+                                                .camera1 = camera1,
                                                 .is_gbuffer = is_gbuffer,
                                                 .buckets = is_spectral ? (uint32_t)f.buckets : 0,
                                                 .lambda_min = f.lambda_min,
@@ -254,7 +263,16 @@ static sr_status build_sampler(struct sr_pbrt_build *b)
     sr_status status = sr_pbrt_bind(b, sampler_params, e, plain, &s);
     if (status != SR_OK)
         return status;
+    static const char *const words[] = {"", "none", "permutedigits", "fastowen", "owen"};
+    int word = 0;
+    while (word < 5 && strcmp(words[word], s.randomization) != 0)
+        ++word;
+    if (word == 5)
+        return sr_pbrt_fail(b->d, sr_pbrt_find(&e->params, "randomization")->where, b->error, SR_ERROR_INPUT,
+                            "\"string randomization\" of Sampler \"%s\" is \"%s\": expected none, permutedigits, fastowen or owen", e->model, s.randomization);
     bool is_independent = strcmp(e->model, "independent") == 0;
+    if (e->where.file && !is_independent && (strcmp(e->model, "halton") == 0 || strcmp(e->model, "stratified") == 0 || strcmp(e->model, "pmj02bn") == 0 || word == 1 || word == 2))
+        sr_log(b->log, SR_INFO, "%s:%d: Sampler \"%s\": Sobol' nets, scrambled as Owen did, take its place: the picture's mean is the same", e->where.file, e->where.line, e->model);
     uint32_t spp = s.spp ? (uint32_t)s.spp : is_independent ? 4 : 16;
     if (strcmp(e->model, "stratified") == 0)
         spp = (uint32_t)s.x_samples * (uint32_t)s.y_samples;
@@ -289,6 +307,9 @@ static sr_status build_integrator(struct sr_pbrt_build *b, enum sr_light_choice 
                          e.model);
         e.model = "volpath";
     }
+    if (!other && strcmp(e.model, "function") == 0)
+        return sr_pbrt_fail(b->d, e.where, b->error, SR_ERROR_INPUT,
+                            "Integrator \"function\" makes no picture of a scene: the errors of samplers over known functions are told by `steradian converge`");
     if (other && !sr_integrator_model_find(e.model))
         e.model = "path";
     const struct sr_integrator_model *m = sr_integrator_model_find(e.model);

@@ -75,6 +75,8 @@ TEST(what_is_not_supported_says_so_and_what_is)
     expect_error("Camera \"pinhole\"\nWorldBegin",
                  "1:1: Camera \"pinhole\" is not supported yet; supported: perspective, orthographic, spherical, fisheye, realistic");
     expect_error("Camera \"realistic\"\nWorldBegin", "1:1: Camera \"realistic\": expected \"string lensfile\"");
+    expect_error("Sampler \"sobol\" \"string randomization\" \"dice\"\nWorldBegin",
+                 "1:17: \"string randomization\" of Sampler \"sobol\" is \"dice\": expected none, permutedigits, fastowen or owen");
     expect_error("Film \"plate\"\nWorldBegin", "1:1: Film \"plate\" is not supported yet; supported: rgb, gbuffer, spectral");
     expect_error("Film \"spectral\" \"float lambdamin\" 700 \"float lambdamax\" 400\nWorldBegin",
                  "1:1: Film \"spectral\": lambdamin 700 nm must be less than lambdamax 400 nm");
@@ -83,8 +85,8 @@ TEST(what_is_not_supported_says_so_and_what_is)
                  "1:16: \"string coordinatesystem\" of Film \"gbuffer\" is \"screen\": expected camera|world");
     expect_error("WorldBegin\nMediumInterface \"fog\" \"\"\n" BALL,
                  "2:1: there is no medium named \"fog\"");
-    expect_error("Film \"rgb\"\n\"string sensor\" \"nikon_d850\" WorldBegin",
-                 "2:1: sensor \"nikon_d850\" is not supported yet; supported: cie1931");
+    expect_error("Film \"rgb\"\n\"string sensor\" \"nikon_d580\" WorldBegin",
+                 "2:1: there is no sensor \"nikon_d580\": expected cie1931 or the name of a camera: did you mean \"nikon_d850\"?");
     expect_error("WorldBegin Texture \"t\" \"spectrum\" \"marzipan\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\" " BALL,
                  "1:12: Texture \"marzipan\" is not supported yet; supported: constant, scale, mix, bilerp, checkerboard, "
                  "imagemap, dots, directionmix, marble, texelmap, attribute, product");
