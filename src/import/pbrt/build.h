@@ -145,6 +145,7 @@ sr_status sr_pbrt_settle_integrator(struct sr_pbrt_build *b);
 
 /* Tables that belong to no model of a room. */
 extern const struct sr_param sr_pbrt_option_params[];
+extern const struct sr_param sr_pbrt_spectral_params[], sr_pbrt_gbuffer_params[];
 extern const struct sr_param *const sr_pbrt_film_params, *const sr_pbrt_sampler_params, *const sr_pbrt_shape_params,
     *const sr_pbrt_ply_params, *const sr_pbrt_material_params, *const sr_pbrt_uncertainty_params;
 

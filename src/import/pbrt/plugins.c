@@ -41,6 +41,9 @@ static void tell_settings(visitor *visit, void *context)
     for (int i = 0; sr_sensor_models[i]; ++i)
         tell(visit, context, "Camera", sr_sensor_models[i]->name, sr_sensor_models[i]->params);
     tell(visit, context, "Film", "", sr_pbrt_film_params);
+    tell(visit, context, "Film", "rgb", NULL);
+    tell(visit, context, "Film", "gbuffer", sr_pbrt_gbuffer_params);
+    tell(visit, context, "Film", "spectral", sr_pbrt_spectral_params);
     for (int i = 0; sr_filter_models[i]; ++i)
         tell(visit, context, "PixelFilter", sr_filter_models[i]->name, sr_filter_models[i]->params);
     tell(visit, context, "Sampler", "", sr_pbrt_sampler_params);

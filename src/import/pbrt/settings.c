@@ -31,13 +31,19 @@ static const struct sr_param film_params[] = {
     {SR_PARAM_FLOAT, "whitebalance", "K", 0, INFINITY, 0, MEMBER(white_balance),
      "correlated colour temperature; 0: none"},
     {SR_PARAM_FLOAT, "maxcomponentvalue", "1", 0, INFINITY, INFINITY, MEMBER(max_component),
-     "larger components are scaled down"},
+     "larger values of the sensor are scaled down"},
     {SR_PARAM_BOOL, "savefp16", "1", 0, 1, 1, MEMBER(savefp16), "read; files are written with 32 bits"},
     {SR_PARAM_STRING, "sensor", "1", 0, 0, 0, MEMBER(sensor), "cie1931"},
     {SR_PARAM_STRING, "filename", "1", 0, 0, NAN, MEMBER(filename), NULL},
-    {SR_PARAM_INT, "nbuckets", "1", 1, 4096, 16, MEMBER(buckets), "of spectral: ranges of wavelengths kept apart"},
-    {SR_PARAM_FLOAT, "lambdamin", "nm", 1, 1e5, 360, MEMBER(lambda_min), "of spectral: where the first begins"},
-    {SR_PARAM_FLOAT, "lambdamax", "nm", 1, 1e5, 830, MEMBER(lambda_max), "of spectral: where the last ends"},
+    {.name = NULL},
+};
+const struct sr_param sr_pbrt_spectral_params[] = {
+    {SR_PARAM_INT, "nbuckets", "1", 1, 4096, 16, MEMBER(buckets), "ranges of wavelengths that are kept apart"},
+    {SR_PARAM_FLOAT, "lambdamin", "nm", 1, 1e5, 360, MEMBER(lambda_min), "where the first begins"},
+    {SR_PARAM_FLOAT, "lambdamax", "nm", 1, 1e5, 830, MEMBER(lambda_max), "where the last ends"},
+    {.name = NULL},
+};
+const struct sr_param sr_pbrt_gbuffer_params[] = {
     {SR_PARAM_ENUM, "coordinatesystem", "1", 0, 1, 0, MEMBER(coordinates), "camera|world"},
     {.name = NULL},
 };
@@ -102,7 +108,10 @@ static sr_status build_film(struct sr_pbrt_build *b)
     bool is_gbuffer = strcmp(e->model, "gbuffer") == 0, is_spectral = strcmp(e->model, "spectral") == 0;
     if (strcmp(e->model, "rgb") != 0 && !is_gbuffer && !is_spectral)
         return sr_pbrt_unsupported(b, e, supported, 3);
+    const struct sr_param *own = is_spectral ? sr_pbrt_spectral_params : is_gbuffer ? sr_pbrt_gbuffer_params : NULL;
     sr_status status = sr_pbrt_bind(b, film_params, e, plain, &f);
+    if (status == SR_OK && own)
+        status = sr_pbrt_bind(b, own, e, plain, &f);
     if (status != SR_OK)
         return status;
     uint32_t camera1 = 0;
@@ -144,7 +153,7 @@ static sr_status build_film(struct sr_pbrt_build *b)
                                                 .lambda_min = f.lambda_min,
                                                 .lambda_max = f.lambda_max,
                                                 .filename = filename};
-    sr_pbrt_warn_unused(b, e, film_params, NULL);
+    sr_pbrt_warn_unused(b, e, film_params, own);
     return set_region(b, &f, &b->result->film);
 }
 
@@ -243,8 +252,8 @@ static const struct sr_param sampler_params[] = {
     {SR_PARAM_INT, "ysamples", "1", 1, 1 << 15, 4, offsetof(struct sampler, y_samples), "of stratified"},
     {SR_PARAM_BOOL, "jitter", "1", 0, 1, 1, offsetof(struct sampler, jitter), "of stratified; read"},
     {SR_PARAM_INT, "seed", "1", INT32_MIN, INT32_MAX, 0, offsetof(struct sampler, seed), "of the random numbers"},
-    {SR_PARAM_STRING, "randomization", "1", 0, 0, 0, offsetof(struct sampler, randomization),
-     "read; nets are Owen-scrambled"},
+    {SR_PARAM_STRING, "randomization", "1", 0, 0, NAN, offsetof(struct sampler, randomization),
+     "none, permutedigits, fastowen or owen: nets are Owen-scrambled all the same"},
     {.name = NULL},
 };
 const struct sr_param *const sr_pbrt_sampler_params = sampler_params;
@@ -265,7 +274,7 @@ static sr_status build_sampler(struct sr_pbrt_build *b)
         return status;
     static const char *const words[] = {"", "none", "permutedigits", "fastowen", "owen"};
     int word = 0;
-    while (word < 5 && strcmp(words[word], s.randomization) != 0)
+    while (s.randomization && word < 5 && strcmp(words[word], s.randomization) != 0)
         ++word;
     if (word == 5)
         return sr_pbrt_fail(b->d, sr_pbrt_find(&e->params, "randomization")->where, b->error, SR_ERROR_INPUT,
