@@ -29,6 +29,20 @@ struct sr_worker {
     const struct sr_target *target;       // NULL: nobody listens, and L alone must be all
     uint64_t rays, shadow_rays, vertices; // counted, never shared
     struct sr_ray_log *log;               // NULL, or where rays are recorded until it is full
+    void *shared; // what the integrator's begin has made for the picture; NULL: there is no picture, or nothing is shared
+    void *held;   // what of it this thread holds
+    uint32_t replicate; // of the sample that is wanted now
+};
+
+/* What an integrator may know of the picture before its first sample. */
+struct sr_picture_plan {
+    uint64_t pixels;
+    uint32_t per_replicate; // samples of each replicate; 0: one net, whose samples are taken for all pixels in turn
+    uint32_t seed;
+    enum sr_sampler_kind sampler;
+    struct sr_lambda_law law;
+    bool jitter_lambda;
+    int threads;
 };
 
 /* A sample's numbers come in groups of four: the sensor's two (one pair, drawn together), then two for each bounce. */
@@ -77,6 +91,10 @@ struct sr_integrator_model {
     /* The reading of a receiver, estimated by the integrator's own strategies there, too. NULL: the meter's, and L. */
     sr_spectrum (*gather)(const void *self, const struct sr_scene *scene, const struct sr_receiver *receiver, const struct sr_sampler *sampler,
                           struct sr_wavelengths *w, struct sr_worker *worker);
+    /* What all samples of a picture share beyond the scene; L finds it in worker->shared, and must do without where that is
+     * NULL: at meters. NULL hooks: nothing. */
+    sr_status (*begin)(const void *self, const struct sr_scene *scene, const struct sr_picture_plan *plan, void **shared, struct sr_error *error);
+    void (*end)(void *shared);
     /* Once the parameters are known: checks them, computes what follows from them. NULL: nothing to do. */
     sr_status (*prepare)(void *self, struct sr_arena *arena, struct sr_error *error);
     /* One sentence: which light of this scene the estimator cannot find, so that it is missing from the result. NULL, or

@@ -33,23 +33,6 @@ static sr_spectrum escaping(const struct sr_scene *scene, const struct sr_point 
     return L;
 }
 
-// light that reaches x straight from a light and leaves toward wo, were nothing in between; false: none
-static inline bool direct(const struct sr_lights *lights, const struct sr_point *x, const struct sr_frame *frame, const struct sr_bsdf *bsdf,
-                          sr_vec3 wo, sr_u4 u, const struct sr_wavelengths *w, struct sr_light_sample *l, sr_spectrum *L)
-{
-    uint32_t index;
-    float pmf;
-    if (!sr_lights_pick(lights, x, u[2], &index, &pmf) || !sr_light_draw(lights->lights[index], x, (sr_vec2){u[0], u[1]}, w, l))
-        return false;
-
-    sr_vec3 wi = sr_to_local(frame, l->wi);
-    float pdf = pmf * l->pdf, pdf_bsdf;
-    sr_spectrum f = sr_bsdf_f_pdf(bsdf, wo, wi, SR_RADIANCE, &pdf_bsdf);
-    sr_spectrum fL = f * l->L * sr_abs_cos_theta(wi);
-    *L = fL * ((l->is_delta ? 1 : sr_mis_weight(pdf, pdf_bsdf)) / pdf);
-    return sr_spectrum_any(fL > 0.0f);
-}
-
 /* Light that s lets into a body at x comes out of it elsewhere: x, frame and bsdf are there from now on, s is how the path leaves
  * it, and light straight from lights is added to L. beta is that of x before s. false: the path ends. */
 static __attribute__((noinline)) bool emerge(const struct sr_scene *scene, const struct sr_bssrdf *b, const struct sr_sampler *sampler, uint32_t group,
@@ -64,7 +47,7 @@ static __attribute__((noinline)) bool emerge(const struct sr_scene *scene, const
     const sr_vec3 up = {0, 0, 1};
     struct sr_light_sample l;
     sr_spectrum L_direct;
-    if (direct(sr_scene_lights(scene), &x->point, frame, bsdf, up, u_light, w, &l, &L_direct) && sr_unoccluded(scene, &x->point, &l, worker))
+    if (sr_path_direct(sr_scene_lights(scene), &x->point, frame, bsdf, up, u_light, w, &l, &L_direct) && sr_unoccluded(scene, &x->point, &l, worker))
         *L += *beta * L_direct;
     return sr_bsdf_sample(bsdf, up, u_bsdf[2], (sr_vec2){u_bsdf[0], u_bsdf[1]}, SR_RADIANCE, s);
 }
@@ -160,7 +143,7 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
         struct sr_light_sample l;
         sr_spectrum L_direct;
         bool is_lit = (sr_bsdf_is_diffuse(&bsdf) || sr_bsdf_lobes(&bsdf) & (SR_LOBE_DIFFUSE | SR_LOBE_GLOSSY)) &&
-                      direct(lights, &x->point, &frame, &bsdf, wo, u_light, w, &l, &L_direct);
+                      sr_path_direct(lights, &x->point, &frame, &bsdf, wo, u_light, w, &l, &L_direct);
         struct sr_bsdf_sample s;
         bool goes_on = sr_bsdf_sample(&bsdf, wo, u_bsdf[2], (sr_vec2){u_bsdf[0], u_bsdf[1]}, SR_RADIANCE, &s);
         if (is_lit && sr_unoccluded(scene, &x->point, &l, worker))

@@ -20,4 +20,21 @@ struct sr_path {
 bool sr_path_enters_bodies(const void *self);
 extern const struct sr_integrator_model sr_integrator_path, sr_integrator_volpath;
 
+/* Light that reaches x straight from a light and leaves toward wo, were nothing in between; false: none. */
+static inline bool sr_path_direct(const struct sr_lights *lights, const struct sr_point *x, const struct sr_frame *frame, const struct sr_bsdf *bsdf,
+                                  sr_vec3 wo, sr_u4 u, const struct sr_wavelengths *w, struct sr_light_sample *l, sr_spectrum *L)
+{
+    uint32_t index;
+    float pmf;
+    if (!sr_lights_pick(lights, x, u[2], &index, &pmf) || !sr_light_draw(lights->lights[index], x, (sr_vec2){u[0], u[1]}, w, l))
+        return false;
+
+    sr_vec3 wi = sr_to_local(frame, l->wi);
+    float pdf = pmf * l->pdf, pdf_bsdf;
+    sr_spectrum f = sr_bsdf_f_pdf(bsdf, wo, wi, SR_RADIANCE, &pdf_bsdf);
+    sr_spectrum fL = f * l->L * sr_abs_cos_theta(wi);
+    *L = fL * ((l->is_delta ? 1 : sr_mis_weight(pdf, pdf_bsdf)) / pdf);
+    return sr_spectrum_any(fL > 0.0f);
+}
+
 #endif

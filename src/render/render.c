@@ -39,6 +39,7 @@ struct run {
     double *buckets;               // as many times the film's buckets; NULL: it has none
     struct sr_path_start middle;   // a ray of the sensor's, for the footprints of light paths
     bool has_middle;
+    void *shared;                  // of the integrator's samples
 };
 
 /* ---- one sample ---- */
@@ -300,6 +301,7 @@ static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, 
         end = (uint32_t)((uint64_t)job->spp * (block + 1) / run->blocks);
     }
     struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, x, y, replicate, begin);
+    worker->replicate = replicate;
     if (splatting)
         splatting->group = block % run->film->splats->groups;
     for (uint32_t i = begin; i < end; ++i) {
@@ -390,7 +392,7 @@ static void work(void *context, int thread)
     struct splatting splatting = begin_splatting(run);
     splatting.target.user = &splatting;
     bool splats = run->film->splats != NULL;
-    struct sr_worker worker = {.log = thread == 0 ? run->job->log : NULL, .target = splats ? &splatting.target : NULL};
+    struct sr_worker worker = {.log = thread == 0 ? run->job->log : NULL, .target = splats ? &splatting.target : NULL, .shared = run->shared};
     for (;;) {
         uint64_t unit = atomic_fetch_add_explicit(&run->next_unit, 1, memory_order_relaxed);
         if (unit >= units || is_cancelled(run) || !do_unit(run, unit, scratch, buckets, splats ? &splatting : NULL, &worker))
@@ -436,6 +438,13 @@ sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render
         sr_arena_free(&arena);
         return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for %d workers", threads);
     }
+    const struct sr_integrator *integrator = &job->integrator;
+    struct sr_picture_plan plan = {.pixels = (uint64_t)pass->film->width * pass->film->height, .per_replicate = pass->per_replicate, .seed = job->seed,
+                                   .sampler = job->sampler, .law = run.response.law, .jitter_lambda = job->jitter_lambda, .threads = threads};
+    if (integrator->model->begin && integrator->model->begin(integrator->self, job->scene, &plan, &run.shared, error) != SR_OK) {
+        sr_arena_free(&arena);
+        return error->status;
+    }
     pthread_rwlock_init(&run.film_lock, NULL);
     pthread_mutex_init(&run.progress_lock, NULL);
     run.last_progress_s = sr_clock_s();
@@ -443,6 +452,8 @@ sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render
     pthread_rwlock_destroy(&run.film_lock);
     pthread_mutex_destroy(&run.progress_lock);
     add_to_report(&run, report);
+    if (run.shared)
+        integrator->model->end(run.shared);
     sr_arena_free(&arena);
     return run.cancelled ? SR_CANCELLED : SR_OK;
 }
@@ -465,7 +476,7 @@ sr_status sr_render(const struct sr_render_job *wanted, struct sr_film **film, s
         return sr_fail(error, SR_ERROR_USAGE, "the estimator %s brings light to the picture as colours, which a film of spectra cannot take; use path or bdpt",
                        job->integrator.model->name);
     bool splats = job->integrator.model->splats && job->sensor.model->connect && !job->film.buckets;
-    if (job->adaptive.is_on && splats)
+    if (job->adaptive.is_on && (splats || job->integrator.model->begin))
         return sr_fail(error, SR_ERROR_USAGE, "the estimator %s brings light to the whole picture at a time, and cannot spend samples on some pixels alone",
                        job->integrator.model->name);
     if (job->adaptive.is_on)
@@ -475,7 +486,9 @@ sr_status sr_render(const struct sr_render_job *wanted, struct sr_film **film, s
     if (sr_film_create(&job->film, job->with_aov, film, error) != SR_OK)
         return error->status;
     struct sr_render_pass pass = {.film = *film, .start_s = sr_clock_s(), .share_end = 1};
-    pass.blocks = job->replicates ? job->replicates : job->spp < ORDINARY_BLOCKS ? job->spp : ORDINARY_BLOCKS;
+    // where samples of a number share something over the whole picture, all pixels take them one after the other
+    uint32_t blocks = job->spp < ORDINARY_BLOCKS || job->integrator.model->begin ? job->spp : ORDINARY_BLOCKS;
+    pass.blocks = job->replicates ? job->replicates : blocks;
     pass.per_replicate = job->replicates ? job->spp / job->replicates : 0;
     sr_status status = splats ? sr_film_add_splats(*film, pass.blocks, error) : SR_OK;
     if (status == SR_OK)

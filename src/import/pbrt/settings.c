@@ -297,8 +297,8 @@ static sr_status build_sampler(struct sr_pbrt_build *b)
 
 /* ---- integrator ---- */
 
-/* pbrt's estimators that are not here: they and path tracing estimate the same integral */
-static bool is_done_by_path(const char *name)
+/* pbrt's estimators that are not here, and what they are chosen for: light that mirrors and glass throw */
+static bool is_done_by_photons(const char *name)
 {
     return strcmp(name, "mlt") == 0 || strcmp(name, "sppm") == 0;
 }
@@ -308,13 +308,12 @@ static sr_status build_integrator(struct sr_pbrt_build *b, enum sr_light_choice 
 {
     struct sr_pbrt_entity e = b->d->integrator;
     const char *other = b->options->integrator, *light_sampler = "bvh";
-    if (is_done_by_path(e.model)) {
+    bool is_foreign = is_done_by_photons(e.model);
+    if (is_foreign) {
         if (e.where.file && !other)
-            sr_pbrt_warn(b->d, e.where,
-                         "Integrator \"%s\" is not supported yet: path tracing (\"volpath\") renders this scene instead, "
-                         "with the same expectation",
-                         e.model);
-        e.model = "volpath";
+            sr_log(b->log, SR_INFO, "%s:%d:%d: Integrator \"%s\": rendered by \"caustics\", path tracing with photons behind mirrors and glass",
+                   e.where.file, e.where.line, e.where.column, e.model);
+        e.model = "caustics";
     }
     if (!other && strcmp(e.model, "function") == 0)
         return sr_pbrt_fail(b->d, e.where, b->error, SR_ERROR_INPUT,
@@ -338,14 +337,14 @@ static sr_status build_integrator(struct sr_pbrt_build *b, enum sr_light_choice 
     *choice = strcmp(light_sampler, "power") == 0     ? SR_LIGHTS_POWER
               : strcmp(light_sampler, "uniform") == 0 ? SR_LIGHTS_UNIFORM
                                                       : SR_LIGHTS_BVH;
-    if (status == SR_OK && !other)
+    if (status == SR_OK && !other && !is_foreign)
         sr_pbrt_warn_unused(b, &e, m->params, NULL);
     if (status == SR_OK && m->prepare)
         status = m->prepare(self, b->arena, b->error);
     struct sr_integrator own = {m, self};
     b->result->integrator = own;
     if (status == SR_OK && other)
-        status = sr_integrator_parse(is_done_by_path(other) ? "volpath" : other, &own, b->arena, &b->result->integrator, b->error);
+        status = sr_integrator_parse(is_done_by_photons(other) ? "caustics" : other, &own, b->arena, &b->result->integrator, b->error);
     return status;
 }
 

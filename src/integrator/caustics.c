@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: MIT */
+/* Path tracing with caustics by photons: light that mirrors and clear glass throw on a surface, whether the surface is seen
+ * directly, in a mirror or through glass.
+ *
+ * Each path of light has one estimator. Seen from its light, it is scattered by s >= 0 delta reflections and refractions before
+ * anything else scatters it. Paths with s = 0 and those that nothing else scatters are traced from the sensor, as in path.c; paths
+ * with s > 0 are joined where they first meet anything else, at x, by the density of photons about x:
+ *
+ *     L(x, wo) = 1 / (paths pi r^2) SUM f(wo, wi) flux        over photons closer than r
+ *
+ * H. W. Jensen 1996; r shrinks from sample to sample (photon_map.c), so that the picture converges to the equation's solution.
+ * Limits: caustics are blurred by r, which error bars do not tell; what slightly rough glass throws is left to path tracing; a meter,
+ * which shares nothing, is read by path tracing alone. */
+#include "integrator/path.h"
+#include "integrator/photon_map.h"
+#include "integrator/vertices.h"
+
+struct caustics {
+    int32_t max_depth;
+    int32_t light_sampler;
+    int32_t photons;
+    float radius;
+};
+
+static const struct sr_param params[] = {
+    {SR_PARAM_INT, "maxdepth", "1", 0, 1e6, 5, offsetof(struct caustics, max_depth), "most scatterings of a path"},
+    {SR_PARAM_ENUM, "lightsampler", "1", 0, 3, 0, offsetof(struct caustics, light_sampler), "bvh|power|uniform|exhaustive"},
+    {SR_PARAM_INT, "photonsperiteration", "1", -1, 1e9, -1, offsetof(struct caustics, photons), "paths from the lights for each sample; -1: as many as pixels"},
+    {SR_PARAM_FLOAT, "radius", "m", 0, 1e30, 0, offsetof(struct caustics, radius), "that a photon is spread over at first; 0: 0.4 % of the scene's diagonal"},
+    {.name = NULL},
+};
+
+static sr_status begin(const void *self, const struct sr_scene *scene, const struct sr_picture_plan *picture, void **shared, struct sr_error *error)
+{
+    const struct caustics *m = self;
+    *shared = NULL;
+    if (!sr_scene_has_mirrors(scene)) // then there are no such paths
+        return SR_OK;
+    struct sr_photon_plan plan = {.radius = m->radius, .paths = m->photons > 0 ? (uint64_t)m->photons : 0, .max_depth = m->max_depth};
+    *shared = sr_photon_maps_create(scene, &plan, picture);
+    return *shared ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for maps of photons");
+}
+
+static void end(void *shared)
+{
+    sr_photon_maps_destroy(shared);
+}
+
+/* ---- the density of photons at a surface ---- */
+
+struct gathering {
+    const struct sr_hit *x;
+    const struct sr_bsdf *bsdf;
+    const struct sr_frame *frame;
+    sr_vec3 wo;
+    uint32_t most;  // scatterings that a photon may have behind it
+    bool is_single; // the sensor's path has one wavelength left
+    sr_spectrum sum;
+};
+
+static void gather_one(void *user, const struct sr_photon *photon)
+{
+    struct gathering *g = user;
+    if (photon->scatterings > g->most || sr_dot(photon->n, g->x->point.n) < 0.7f) // around a corner
+        return;
+    sr_vec3 wi = sr_to_local(g->frame, photon->wi);
+    float in_cos = fabsf(sr_dot(photon->wi, g->x->point.n));
+    if (in_cos < 1e-6f)
+        return;
+    // flux counts by the true surface, f by the shading normal (Veach 1997, 5.3)
+    float scale = sr_abs_cos_theta(wi) / in_cos;
+    if (photon->is_single && !g->is_single)
+        scale *= SR_LAMBDA_COUNT; // one wavelength stands for all
+    float pdf;
+    g->sum += sr_bsdf_f_pdf(g->bsdf, g->wo, wi, SR_RADIANCE, &pdf) * photon->flux * scale;
+}
+
+static sr_spectrum gather(const struct sr_photon_map *map, const struct sr_hit *x, const struct sr_bsdf *bsdf, const struct sr_frame *frame, sr_vec3 wo,
+                          uint32_t most, const struct sr_wavelengths *w)
+{
+    struct gathering g = {.x = x, .bsdf = bsdf, .frame = frame, .wo = wo, .most = most, .is_single = sr_wavelengths_secondary_terminated(w), .sum = SR_BLACK};
+    sr_photons_near(map, x->point.p, gather_one, &g);
+    sr_spectrum L = g.sum * (1 / ((float)map->paths * SR_PI * map->radius * map->radius));
+    if (!g.is_single)
+        return L;
+    sr_spectrum hero = SR_BLACK;
+    hero[0] = L[0];
+    return hero;
+}
+
+/* ---- paths from the sensor ---- */
+
+static sr_spectrum caustics_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
+                              struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
+{
+    const struct caustics *m = self;
+    const struct sr_lights *lights = sr_scene_lights(scene);
+    const struct sr_photon_map *map = NULL;
+    if (worker->shared) {
+        map = sr_photon_map_of(worker->shared, worker->replicate, sampler->sample, worker);
+        if (!map)
+            return SR_BLACK + NAN; // no memory: dropped, and told
+        *w = map->w; // photons are of the same wavelengths
+    }
+    bool has_footprints = sr_scene_has_footprints(scene);
+    float width = 0, spread = has_footprints ? 0.5f * (sr_length(start->dddx) + sr_length(start->dddy)) : 0;
+    struct sr_ray ray = start->ray;
+    sr_spectrum L = SR_BLACK, beta = SR_ONE;
+    float pdf = INFINITY, eta_scale = 1;
+    bool is_scattered = false;
+    struct sr_point from;
+    if (start->receiver) {
+        from = *start->receiver;
+        pdf = start->pdf;
+    }
+    for (int bounce = 0, passed = 0;;) {
+        uint32_t group = SR_USE_BOUNCE + 2 * (uint32_t)bounce;
+        sr_u4 u_light, u_bsdf;
+        sr_sample8(sampler, group, &u_light, &u_bsdf);
+        struct sr_hit x;
+        bool is_hit = sr_trace(scene, &ray, &x, worker);
+        if (first && bounce == 0)
+            *first = is_hit ? x : (struct sr_hit){.t = INFINITY};
+        // light that mirrors throw on what has scattered this path before is the photons'
+        bool is_photons = map && is_scattered && isinf(pdf);
+        if (!is_photons && (!is_hit || x.light != SR_NO_LIGHT)) {
+            struct sr_path_start now = {.ray = ray, .receiver = isinf(pdf) ? NULL : &from, .pdf = pdf};
+            L += beta * sr_met_at_once(scene, &now, is_hit ? &x : NULL, ray.d, w);
+        }
+        if (!is_hit || (x.material && bounce == m->max_depth))
+            return L;
+        struct sr_bsdf bsdf = {.model = NULL};
+        struct sr_frame frame;
+        if (x.material) {
+            if (has_footprints) {
+                sr_path_footprint(start, &x, bounce == 0, is_scattered, spread, &width);
+                if (first && bounce == 0)
+                    first->point = x.point;
+            }
+            sr_material_shade(x.material, &x.point, sr_neg(ray.d), u_bsdf[3], sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu, w, &bsdf, &frame);
+        }
+        if (!bsdf.model) {
+            if (++passed > 1000)
+                return L;
+            ray = sr_leave(&x.point, ray.d);
+            continue;
+        }
+        worker->vertices += 1;
+        sr_vec3 wo = sr_to_local(&frame, sr_neg(ray.d));
+        if (wo.z == 0)
+            return L;
+        if (sr_bsdf_lobes(&bsdf) & (SR_LOBE_DIFFUSE | SR_LOBE_GLOSSY)) {
+            struct sr_light_sample l;
+            sr_spectrum L_direct;
+            if (sr_path_direct(lights, &x.point, &frame, &bsdf, wo, u_light, w, &l, &L_direct) && sr_unoccluded(scene, &x.point, &l, worker))
+                L += beta * L_direct;
+            if (map && bounce + 1 < m->max_depth)
+                L += beta * gather(map, &x, &bsdf, &frame, wo, (uint32_t)(m->max_depth - bounce - 1), w);
+        }
+        struct sr_bsdf_sample s;
+        if (!sr_bsdf_sample(&bsdf, wo, u_bsdf[2], (sr_vec2){u_bsdf[0], u_bsdf[1]}, SR_RADIANCE, &s))
+            return L;
+        beta *= s.f * (sr_abs_cos_theta(s.wi) / s.pdf);
+        pdf = s.lobe & SR_LOBE_SPECULAR ? INFINITY : s.pdf_is_proportional ? sr_bsdf_pdf(&bsdf, wo, s.wi, SR_RADIANCE) : s.pdf;
+        if (s.lobe & SR_LOBE_TRANSMISSION)
+            eta_scale *= s.eta * s.eta;
+        is_scattered |= !(s.lobe & SR_LOBE_SPECULAR);
+        from = x.point;
+        ray = sr_leave(&x.point, sr_to_world(&frame, s.wi));
+        ++bounce;
+        float carried = sr_spectrum_max(beta) * eta_scale;
+        if (!(carried > 0))
+            return L;
+        if (carried < 1 && bounce > 1) {
+            float survive = sr_max(carried, 0.05f);
+            if (u_light[3] >= survive)
+                return L;
+            beta *= 1 / survive;
+        }
+    }
+}
+
+const struct sr_integrator_model sr_integrator_caustics = {
+    .name = "caustics",
+    .text = "paths from the sensor, and photons where mirrors and glass throw light on a surface",
+    .params = params,
+    .size = sizeof(struct caustics),
+    .L = caustics_L,
+    .knows_receivers = true,
+    .begin = begin,
+    .end = end,
+};
