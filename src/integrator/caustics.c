@@ -53,9 +53,8 @@ struct gathering {
     const struct sr_bsdf *bsdf;
     const struct sr_frame *frame;
     sr_vec3 wo;
-    uint32_t most;  // scatterings that a photon may have behind it
-    bool is_single; // the sensor's path has one wavelength left
-    sr_spectrum sum;
+    uint32_t most; // scatterings that a photon may have behind it
+    sr_spectrum sum, single; // of photons of all wavelengths, and of those of which only the first is left
 };
 
 static void gather_one(void *user, const struct sr_photon *photon)
@@ -64,44 +63,30 @@ static void gather_one(void *user, const struct sr_photon *photon)
     if (photon->scatterings > g->most || sr_dot(photon->n, g->x->point.n) < 0.7f) // around a corner
         return;
     sr_vec3 wi = sr_to_local(g->frame, photon->wi);
-    float in_cos = fabsf(sr_dot(photon->wi, g->x->point.n));
+    float in_cos = fabsf(sr_dot(photon->wi, g->x->point.n)), pdf;
     if (in_cos < 1e-6f)
         return;
     // flux counts by the true surface, f by the shading normal (Veach 1997, 5.3)
-    float scale = sr_abs_cos_theta(wi) / in_cos;
-    if (photon->is_single && !g->is_single)
-        scale *= SR_LAMBDA_COUNT; // one wavelength stands for all
-    float pdf;
-    g->sum += sr_bsdf_f_pdf(g->bsdf, g->wo, wi, SR_RADIANCE, &pdf) * photon->flux * scale;
-}
-
-static sr_spectrum gather(const struct sr_photon_map *map, const struct sr_hit *x, const struct sr_bsdf *bsdf, const struct sr_frame *frame, sr_vec3 wo,
-                          uint32_t most, const struct sr_wavelengths *w)
-{
-    struct gathering g = {.x = x, .bsdf = bsdf, .frame = frame, .wo = wo, .most = most, .is_single = sr_wavelengths_secondary_terminated(w), .sum = SR_BLACK};
-    sr_photons_near(map, x->point.p, gather_one, &g);
-    sr_spectrum L = g.sum * (1 / ((float)map->paths * SR_PI * map->radius * map->radius));
-    if (!g.is_single)
-        return L;
-    sr_spectrum hero = SR_BLACK;
-    hero[0] = L[0];
-    return hero;
+    sr_spectrum fL = sr_bsdf_f_pdf(g->bsdf, g->wo, wi, SR_RADIANCE, &pdf) * photon->flux * (sr_abs_cos_theta(wi) / in_cos);
+    *(photon->is_single ? &g->single : &g->sum) += fL;
 }
 
 /* ---- paths from the sensor ---- */
 
-static sr_spectrum caustics_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
-                              struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
+static void gather(const struct sr_photon_map *map, struct gathering *g, sr_spectrum beta, sr_spectrum *L, sr_spectrum *L_single)
 {
-    const struct caustics *m = self;
+    g->sum = g->single = SR_BLACK;
+    sr_photons_near(map, g->x->point.p, gather_one, g);
+    float density = 1 / ((float)map->paths * SR_PI * map->radius * map->radius); // [1/m^2] of one photon
+    *L += beta * g->sum * density;
+    *L_single += beta * g->single * density;
+}
+
+/* L along the path, but for what photons of a single wavelength bring. */
+static sr_spectrum walk(const struct caustics *m, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
+                        const struct sr_photon_map *map, struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker, sr_spectrum *single)
+{
     const struct sr_lights *lights = sr_scene_lights(scene);
-    const struct sr_photon_map *map = NULL;
-    if (worker->shared) {
-        map = sr_photon_map_of(worker->shared, worker->replicate, sampler->sample, worker);
-        if (!map)
-            return SR_BLACK + NAN; // no memory: dropped, and told
-        *w = map->w; // photons are of the same wavelengths
-    }
     bool has_footprints = sr_scene_has_footprints(scene);
     float width = 0, spread = has_footprints ? 0.5f * (sr_length(start->dddx) + sr_length(start->dddy)) : 0;
     struct sr_ray ray = start->ray;
@@ -155,7 +140,7 @@ static sr_spectrum caustics_L(const void *self, const struct sr_scene *scene, co
             if (sr_path_direct(lights, &x.point, &frame, &bsdf, wo, u_light, w, &l, &L_direct) && sr_unoccluded(scene, &x.point, &l, worker))
                 L += beta * L_direct;
             if (map && bounce + 1 < m->max_depth)
-                L += beta * gather(map, &x, &bsdf, &frame, wo, (uint32_t)(m->max_depth - bounce - 1), w);
+                gather(map, &(struct gathering){.x = &x, .bsdf = &bsdf, .frame = &frame, .wo = wo, .most = (uint32_t)(m->max_depth - bounce - 1)}, beta, &L, single);
         }
         struct sr_bsdf_sample s;
         if (!sr_bsdf_sample(&bsdf, wo, u_bsdf[2], (sr_vec2){u_bsdf[0], u_bsdf[1]}, SR_RADIANCE, &s))
@@ -178,6 +163,22 @@ static sr_spectrum caustics_L(const void *self, const struct sr_scene *scene, co
             beta *= 1 / survive;
         }
     }
+}
+
+static sr_spectrum caustics_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
+                              struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
+{
+    const struct sr_photon_map *map = NULL;
+    if (worker->shared) {
+        map = sr_photon_map_of(worker->shared, worker->replicate, sampler->sample, worker);
+        if (!map)
+            return SR_BLACK + NAN; // no memory: dropped, and told
+        *w = map->w; // photons are of the same wavelengths
+    }
+    sr_spectrum single = SR_BLACK, L = walk(self, scene, start, sampler, map, w, first, worker, &single);
+    // of one wavelength: it stands for all, whether dispersion has left the sensor's path the others or not
+    L[0] += single[0] * (sr_wavelengths_secondary_terminated(w) ? 1 : SR_LAMBDA_COUNT);
+    return L;
 }
 
 const struct sr_integrator_model sr_integrator_caustics = {

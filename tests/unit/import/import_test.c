@@ -162,8 +162,6 @@ TEST(odd_things_are_warned_of)
     expect_warning(
         "WorldBegin\nMaterial \"none\"\n" BALL,
         "s.pbrt:2:1: Material \"none\" is deprecated: \"interface\" is the name of the material that is none");
-    expect_warning("Integrator \"sppm\" WorldBegin " BALL,
-                   "s.pbrt:1:1: Integrator \"sppm\" is not supported yet: path tracing (\"volpath\") renders this scene instead");
     expect_warning("WorldBegin AreaLightSource \"diffuse\" ObjectBegin \"a\"\n" BALL "ObjectEnd ObjectInstance \"a\"",
                    "s.pbrt:2:1: a shape of an object cannot shine");
     import("WorldBegin Attribute \"shape\" \"float nobody\" 1 " BALL); // defaults need not be used
@@ -203,7 +201,7 @@ TEST(settings_are_those_of_the_file_unless_options_say_otherwise)
                                   .integrator = "sppm"};
     EXPECT_EQUAL_INT(import_with(text, &o), SR_OK);
     EXPECT(f->width == 20 && f->height == 10 && f->x1 == 10 && result.spp == 16 && result.hash == hash);
-    EXPECT_EQUAL_TEXT(result.integrator.model->name, "path");
+    EXPECT_EQUAL_TEXT(result.integrator.model->name, "caustics");
     sr_import_result_free(&result);
 
     import("WorldBegin " BALL); // pbrt's defaults
