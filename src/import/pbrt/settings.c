@@ -416,7 +416,7 @@ sr_status sr_pbrt_settle_integrator(struct sr_pbrt_build *b)
     const char *name = i->model->name;
     if (strcmp(name, "volpath") == 0 && !has_media)
         i->model = sr_integrator_model_find("path"); // which takes the same parameters
-    if (!has_media || (strcmp(name, "bdpt") != 0 && strcmp(name, "lightpath") != 0))
+    if (!has_media || (strcmp(name, "bdpt") != 0 && strcmp(name, "lightpath") != 0 && strcmp(name, "caustics") != 0))
         return SR_OK;
     sr_log(b->log, SR_WARNING, "%s: \"%s\" knows no media here: \"volpath\" renders this scene instead, with the same expectation", b->main_path, name);
     struct sr_integrator own = *i;
