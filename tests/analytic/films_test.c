@@ -98,7 +98,7 @@ static void gbuffer(const char *space)
         EXPECT_NEAR(channel(image, "Albedo.G", x, 10), 0.4, 1e-3);
         double dzdx = 4 * slope * pixel / pow(1 - slope * k, 2);
         EXPECT_RELATIVE(channel(image, "dzdx", x, 10), 0.125 * dzdx, is_slow_build() ? 3 : 1e-2);
-        EXPECT_NEAR(channel(image, "dzdy", x, 10), 0, 1e-7);
+        EXPECT_NEAR(channel(image, "dzdy", x, 10), 0, 1e-6); // of 5e-4 in x
         EXPECT(channel(image, "RelativeVariance.G", x, 10) >= 0 && channel(image, "Variance.R", x, 10) >= 0);
     }
     sr_image_free(image);
