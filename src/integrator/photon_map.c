@@ -99,7 +99,7 @@ static bool trace(const struct sr_photon_maps *m, const struct sr_photon_map *ma
     struct sr_wavelengths w = map->w;
     sr_u4 u = sr_sample4(sampler, SR_USE_LIGHT_PATH), u_place = sr_sample4(sampler, SR_USE_LIGHT_PATH + 1);
     struct sr_light_ray r;
-    if (!sr_lights_emit(sr_scene_lights(m->scene), u[2], (sr_vec2){u_place[0], u_place[1]}, (sr_vec2){u[0], u[1]}, &w, &r))
+    if (!sr_lights_emit(sr_scene_lights(m->scene), u[2], (sr_vec2){u_place[0], u_place[1]}, (sr_vec2){u[0], u[1]}, &w, &r) || !sr_has_come_in(m->scene, &r, worker))
         return true;
     float cos_theta = sr_length2(r.from.n) > 0 ? fabsf(sr_dot(r.from.n, r.w)) : 1;
     sr_spectrum beta = r.L * (cos_theta / (r.pmf * r.pdf_area * r.pdf_direction));
