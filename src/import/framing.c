@@ -3,7 +3,9 @@
  *
  *     distance = max over corners c of  c.back + max(|c.right| / tan(x/2), |c.up| / tan(y/2))       [m]
  *
- * with c from the middle of the box; 5 % are left on each side. */
+ * with c from the middle of the box; 5 % are left on each side. The sky, k being to the upper left of the camera:
+ *
+ *     L(w) = 0.25 + 0.5 (1 + w.up) / 2 + 3 exp(12 (w.k - 1))      [cd/m^2] */
 #include "import/framing.h"
 
 #include <stdio.h>

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The camera that the file has, or one that sees all of it; and the film, as wide as the camera says.
  *
- * A camera of glTF looks along -z of its node, y up. yfov is the whole vertical angle; "fov" is that of the shorter side.
- * The camera made for a file without stands in front (+z), a little above and to the right, as near as all corners of the
- * bounds allow. glTF 2.0, 3.10. */
+ * A camera of glTF looks along -z of its node, y up. yfov is the whole vertical angle; "fov" is that of the shorter side. glTF 2.0, 3.10. */
+#include "import/framing.h"
 #include "import/gltf/gltf.h"
 
 #include <stdlib.h>
@@ -82,31 +81,6 @@ static bool is_meant(struct sr_gltf *g, const struct sr_gltf_at *node, const str
            (strtoul(word, &end, 10) == number && *word && !*end);
 }
 
-static void place_framing(struct sr_gltf *g, sr_vec3 *key)
-{
-    const double yfov = 40 * pi / 180;
-    double aspect = place_film(g, 16.0 / 9);
-    bool is_empty = sr_box_is_empty(g->bounds);
-    sr_vec3 centre = is_empty ? (sr_vec3){0, 0, 0} : sr_box_centre(g->bounds), half = is_empty ? (sr_vec3){1, 1, 1} : sr_scale(0.5f, sr_box_diagonal(g->bounds));
-    sr_vec3 back = sr_normalize((sr_vec3){0.3f, 0.25f, 1}), right = sr_normalize(sr_cross((sr_vec3){0, 1, 0}, back)), up = sr_cross(back, right);
-    float ty = (float)tan(yfov / 2) * 0.95f, tx = ty * (float)aspect, distance = 1e-6f;
-    for (int k = 0; k < 8; ++k) {
-        sr_vec3 c = {k & 1 ? half.x : -half.x, k & 2 ? half.y : -half.y, k & 4 ? half.z : -half.z};
-        float side = sr_max(fabsf(sr_dot(c, right)) / tx, fabsf(sr_dot(c, up)) / ty);
-        distance = sr_max(distance, sr_dot(c, back) + side);
-    }
-    sr_vec3 eye = sr_mad(centre, distance, back);
-    double m[4][4] = {{(double)right.x, (double)up.x, (double)-back.x, (double)eye.x},
-                      {(double)right.y, (double)up.y, (double)-back.y, (double)eye.y},
-                      {(double)right.z, (double)up.z, (double)-back.z, (double)eye.z},
-                      {0, 0, 0, 1}};
-    struct sr_transform to_world = sr_gltf_transform_of(m);
-    put_fov(g, yfov, aspect);
-    sr_compose_camera(&g->c, "perspective", &to_world);
-    *key = sr_normalize(sr_add(sr_add(back, sr_scale(-0.6f, right)), sr_scale(0.9f, up)));
-    sr_log(g->c.d->log, SR_INFO, "%s: has no camera: one at (%g, %g, %g) m sees all of it", g->c.path, (double)eye.x, (double)eye.y, (double)eye.z);
-}
-
 void sr_gltf_place_camera(struct sr_gltf *g, sr_vec3 *key)
 {
     uint32_t count = sr_gltf_root_count(g, "cameras"), number = 0;
@@ -128,5 +102,5 @@ void sr_gltf_place_camera(struct sr_gltf *g, sr_vec3 *key)
     if (g->options->camera && !is_placed && sr_gltf_is_well(g))
         sr_gltf_fail(g, NULL, "there is no camera \"%.60s\": the file has %u", g->options->camera, number);
     if (!is_placed && sr_gltf_is_well(g))
-        place_framing(g, key);
+        *key = sr_frame_camera(&g->c, g->options, g->bounds, (sr_vec3){0, 1, 0});
 }

@@ -226,6 +226,5 @@ struct sr_transform sr_gltf_transform_of(const double m[4][4]);
 void sr_gltf_place_meshes(struct sr_gltf *g);
 void sr_gltf_place_lights(struct sr_gltf *g);
 void sr_gltf_place_camera(struct sr_gltf *g, sr_vec3 *key); // key: where a bright region of the sky does well
-void sr_gltf_place_sky(struct sr_gltf *g, sr_vec3 key);
 
 #endif

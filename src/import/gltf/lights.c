@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Lights without extent (KHR_lights_punctual), and a sky where a file has none.
+/* Lights without extent (KHR_lights_punctual).
  *
  *     point, spot: intensity in cd; directional: illuminance in lx of a surface that faces it; all of white light, times colour
- *     sky:  L(w) = 0.25 + 0.5 (1 + w.y) / 2 + 3 exp(12 (w.k - 1))      [cd/m^2],   k to the upper left of the camera
  *
  * Lights shine along their node's -z. Spots fall off between their cones as pbrt's do, smoothly in the cosine; glTF only
  * recommends its own way. */
 #include "import/gltf/gltf.h"
 
-#include <stdio.h>
 #include <string.h>
 
 enum { LIGHT_B = 900 };
@@ -70,29 +68,4 @@ void sr_gltf_place_lights(struct sr_gltf *g)
         struct sr_gltf_at light = sr_gltf_element(g, &list, light1 - 1);
         place_light(g, &light, (const double(*)[4])g->nodes[i].world);
     }
-}
-
-/* An equal-area octahedral map as PFM, whose rows begin at the bottom. */
-void sr_gltf_place_sky(struct sr_gltf *g, sr_vec3 key)
-{
-    enum { SIDE = 64 };
-    char head[32];
-    int length = snprintf(head, sizeof head, "PF\n%d %d\n-1.0\n", SIDE, SIDE);
-    char *bytes = sr_arena_alloc(&g->c.d->words, (size_t)length + SIDE * SIDE * 3 * sizeof(float));
-    if (!bytes) {
-        sr_fail(g->c.error, SR_ERROR_RESOURCE, "%s: not enough memory", g->c.path);
-        return;
-    }
-    memcpy(bytes, head, (size_t)length);
-    for (int y = 0; y < SIDE; ++y)
-        for (int x = 0; x < SIDE; ++x) {
-            sr_vec3 w = sr_equal_area_square_to_sphere((sr_vec2){((float)x + 0.5f) / SIDE, ((float)y + 0.5f) / SIDE});
-            float L = 0.25f + 0.25f * (1 + w.y) + 3 * expf(12 * (sr_dot(w, key) - 1)), rgb[3] = {L, L, L};
-            memcpy(bytes + length + (size_t)((SIDE - 1 - y) * SIDE + x) * sizeof rgb, rgb, sizeof rgb);
-        }
-    const char *slash = strrchr(g->c.path, '/'), *name = sr_compose_printf(&g->c, "%s#sky.pfm", slash ? slash + 1 : g->c.path);
-    sr_compose_file(&g->c, name, bytes, (size_t)length + SIDE * SIDE * 3 * sizeof(float));
-    sr_compose_string(&g->c, "filename", name);
-    sr_compose_light(&g->c, "infinite");
-    sr_log(g->c.d->log, SR_INFO, "%s: has no lights of its own: lit by a grey sky of 0.25 to 0.75 cd/m^2, with a bright region of 3 cd/m^2", g->c.path);
 }

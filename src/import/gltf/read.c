@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* A glTF file to a description: container, nodes, meshes with their materials, lights, camera; and the end of it. */
+#include "import/framing.h"
 #include "import/gltf/gltf.h"
 
 #include <stdlib.h>
@@ -38,7 +39,7 @@ static void build(struct sr_gltf *g, const char *bytes, size_t size)
     if (sr_gltf_is_well(g))
         sr_gltf_place_camera(g, &key);
     if (sr_gltf_is_well(g) && g->light_count == 0)
-        sr_gltf_place_sky(g, key);
+        sr_frame_sky(&g->c, key, (sr_vec3){0, 1, 0});
     sr_compose_setting(&g->c, "Integrator", g->c.d->media.count ? "volpath" : "path");
 }
 
