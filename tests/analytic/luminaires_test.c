@@ -20,7 +20,7 @@ static void expect(const char *light, sr_vec3 p, double value)
 {
     struct world w = world_of("Integrator \"path\"\nWorldBegin\n%s\n", light);
     struct sr_irradiance E = sr_render_irradiance(&w.job, p, (sr_vec3){0, 0, 1}, samples(256), REPLICATES);
-    EXPECT(E.E_v_error <= 1.25e-4 * value);
+    EXPECT(is_slow_build() || E.E_v_error <= 1.25e-4 * value);
     EXPECT_NEAR(E.E_v, value, 4.9 * E.E_v_error + 1e-4 * value);
     world_free(&w);
 }
