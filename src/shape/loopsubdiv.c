@@ -9,8 +9,9 @@
  * Tangents, those of the next ones: inside SUM cos(2 pi i/n) p_i and SUM sin(2 pi i/n) p_i; on a boundary with n neighbours
  * b_1 - b_0 and, with t = pi/(n-1), SUM sin(i t) p_i + k (b_0 + b_1) - (2 k + cot(t/2)) p, k = (sin t - cot(t/2)) / (1 + 2 cos t).
  * C. Loop, Smooth subdivision surfaces based on triangles, 1987; H. Hoppe and others, Piecewise smooth surface
- * reconstruction, 1994. N points against the winding, as in pbrt-v4, whose boundaries go to the limit by 3/5 and 1/5, and
- * so stray from their own rule by 1/30 of a second difference.
+ * reconstruction, 1994. N points against the winding, as in pbrt-v4. What is above is so where "unbiased" is true; else as in pbrt,
+ * whose boundaries go to the limit by 3/5 and 1/5, and so stray from their own rule by 1/30 of a second difference, and whose
+ * tangents are those of points that have been moved to the limit already: highlights of coarse meshes lie elsewhere.
  * Limits: each edge has one or two triangles, wound alike, and each vertex one fan of them. */
 #include "shape/shape.h"
 
@@ -24,6 +25,7 @@ static const struct sr_param params[] = {
     {SR_PARAM_INTS, "indices", "1", 0, INT32_MAX, NAN, offsetof(L, indices), "three vertices a triangle"},
     {SR_PARAM_POINT3S, "P", "m", -INFINITY, INFINITY, NAN, offsetof(L, P), "positions of the control vertices"},
     {SR_PARAM_ENUM, "scheme", "1", 0, 0, 0, offsetof(L, scheme), "loop"},
+    {SR_PARAM_BOOL, "unbiased", "1", 0, 1, 0, offsetof(L, unbiased), "points and normals of the limit surface itself; false: pbrt's, close to it"},
     {0},
 };
 #undef L
@@ -149,12 +151,10 @@ static sr_vec3 smoothed(const struct net *m, uint32_t v)
     return r.count ? mask(m->P[v], &r, beta(r.count), 1.0 / 8) : m->P[v];
 }
 
-static sr_vec3 limit(const struct net *m, uint32_t v, int *count, bool *is_boundary)
+static sr_vec3 limit(const struct net *m, uint32_t v, bool unbiased)
 {
     struct ring r = walk(m, v, NULL, NULL);
-    *count = r.count;
-    *is_boundary = r.is_boundary;
-    return r.count ? mask(m->P[v], &r, 1 / (r.count + 3 / (8 * beta(r.count))), 1.0 / 6) : m->P[v];
+    return r.count ? mask(m->P[v], &r, 1 / (r.count + 3 / (8 * beta(r.count))), unbiased ? 1.0 / 6 : 1.0 / 5) : m->P[v];
 }
 
 struct tangents {
@@ -178,14 +178,16 @@ static void add_tangent(void *context, int i, sr_vec3 p)
     }
 }
 
-static sr_vec3 limit_normal(const struct net *m, uint32_t v, int count, bool is_boundary)
+static sr_vec3 limit_normal(const struct net *m, uint32_t v, bool unbiased)
 {
-    struct tangents k = {.n = count, .is_boundary = is_boundary};
+    struct ring r = walk(m, v, NULL, NULL);
+    int count = r.count;
+    struct tangents k = {.n = count, .is_boundary = r.is_boundary};
     if (count == 0)
         return (sr_vec3){0, 0, 0};
-    if (is_boundary) {
+    if (r.is_boundary) {
         double t = (double)SR_PI / (count - 1), cot = count == 2 ? 0 : 1 / tan(t / 2);
-        k.ends = count == 2 ? 1 : (sin(t) - cot) / (1 + 2 * cos(t));
+        k.ends = count == 2 ? 1 : unbiased || count < 5 ? (sin(t) - cot) / (1 + 2 * cos(t)) : -cot / 2;
         add(&k.t, -(2 * k.ends + cot), m->P[v]);
     }
     walk(m, v, add_tangent, &k);
@@ -358,18 +360,18 @@ static sr_status split(struct net *m, struct sr_error *error)
     return SR_OK;
 }
 
-static sr_status finish(const struct net *m, struct sr_arena *arena, struct sr_shape_mesh *out, struct sr_error *error)
+static sr_status finish(const struct net *m, bool unbiased, struct sr_arena *arena, struct sr_shape_mesh *out, struct sr_error *error)
 {
     sr_vec3 *P = sr_arena_alloc(arena, (size_t)m->vertices * sizeof *P + 4), *N = sr_arena_alloc(arena, (size_t)m->vertices * sizeof *N);
     int32_t *indices = sr_arena_copy(arena, m->corner, 3 * (size_t)m->triangles * sizeof *indices);
     if (!P || !N || !indices)
         return no_memory(error);
-    for (uint32_t v = 0; v < m->vertices; ++v) {
-        int count;
-        bool is_boundary;
-        P[v] = limit(m, v, &count, &is_boundary);
-        N[v] = limit_normal(m, v, count, is_boundary);
-    }
+    for (uint32_t v = 0; v < m->vertices; ++v)
+        P[v] = limit(m, v, unbiased);
+    struct net moved = *m; // whose masks pbrt asks for tangents
+    moved.P = P;
+    for (uint32_t v = 0; v < m->vertices; ++v)
+        N[v] = limit_normal(unbiased ? m : &moved, v, unbiased);
     *out = (struct sr_shape_mesh){.indices = {indices, 3 * m->triangles}, .P = {P, m->vertices}, .N = {N, m->vertices}};
     return SR_OK;
 }
@@ -382,7 +384,7 @@ static sr_status prepare(void *self, const struct sr_shape_placement *placement,
     for (int i = 0; i < l->levels && status == SR_OK; ++i)
         status = split(&m, error);
     if (status == SR_OK)
-        status = finish(&m, arena, &l->mesh, error);
+        status = finish(&m, l->unbiased, arena, &l->mesh, error);
     free_net(&m);
     return status == SR_OK ? sr_shape_trianglemesh.prepare(&l->mesh, placement, arena, error) : status;
 }

@@ -122,6 +122,7 @@ struct sr_shape_loopsubdiv {
     struct sr_shape_mesh mesh; // derived
     int32_t levels;            // [1]
     int32_t scheme;            // loop is the only one
+    bool unbiased;             // the limit surface itself; false: pbrt's points and normals, close to it
     struct sr_slice indices;   // int32, three a triangle
     struct sr_slice P;         // sr_vec3 [m]
 };

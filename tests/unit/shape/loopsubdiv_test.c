@@ -7,7 +7,7 @@
 static struct sr_shape_mesh *subdivide(const sr_vec3 *P, uint32_t vertices, const int32_t *indices, uint32_t corners, int levels)
 {
     struct sr_shape_loopsubdiv *l = sr_arena_alloc(&test_arena, sizeof *l);
-    *l = (struct sr_shape_loopsubdiv){.levels = levels, .indices = {indices, corners}, .P = {P, vertices}};
+    *l = (struct sr_shape_loopsubdiv){.levels = levels, .unbiased = true, .indices = {indices, corners}, .P = {P, vertices}};
     PREPARE(sr_shape_loopsubdiv, l, here());
     return &l->mesh;
 }
@@ -171,7 +171,7 @@ TEST(loopsubdiv_boundary_is_a_cubic_spline)
 
 static void expect_refused(const sr_vec3 *P, uint32_t vertices, const int32_t *indices, uint32_t corners, int levels, const char *says)
 {
-    struct sr_shape_loopsubdiv l = {.levels = levels, .indices = {indices, corners}, .P = {P, vertices}};
+    struct sr_shape_loopsubdiv l = {.levels = levels, .unbiased = true, .indices = {indices, corners}, .P = {P, vertices}};
     struct sr_shape_placement placement = here();
     struct sr_error error = {0};
     EXPECT(sr_shape_loopsubdiv.prepare(&l, &placement, &test_arena, &error) != SR_OK);
