@@ -145,6 +145,8 @@ static void sense(const struct sr_render_job *job, const struct response *r, sr_
 static bool sample_pixel(const struct sr_render_job *job, const struct response *response, uint32_t x, uint32_t y, const struct sr_sampler *sampler,
                          float rgb[3], double *buckets, struct sr_first_hit *first, struct sr_worker *worker)
 {
+    if (first)
+        *first = (struct sr_first_hit){0}; // where the sensor sees nothing at all
     sr_u4 u, u_lens;
     sr_sample8(sampler, SR_USE_FILM, &u, &u_lens);
     float weight = 1;

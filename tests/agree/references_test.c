@@ -173,7 +173,8 @@ TEST(scenes_agree_with_reference_images)
     while (next_row(&cursor, &row)) {
         char path[1024], verdict[256];
         snprintf(path, sizeof path, "%s/scenes/%s", SR_TEST_REFERENCE_DIR, row.scene);
-        struct sr_import_options options = {.spp = spp};
+        // a lamp of 5 mm, focused by a ball of glass in fog: few samples find it
+        struct sr_import_options options = {.spp = spp > 1 && strstr(row.scene, "volumetric-caustic") ? 4 * spp : spp};
         struct sr_import_result scene;
         struct sr_error import_error = {0};
         struct sr_log log = {0};
