@@ -447,7 +447,7 @@ static void seen_point(const void *self, uint32_t primitive, sr_vec2 hit, sr_vec
     if (!m->is_here)
         d = sr_inverse_vector(to_world, d);
     d = sr_normalize(d);
-    sr_vec3 tangent = tangent_at(piece.segment->a, hit.x), n;
+    sr_vec3 tangent = tangent_at(piece.segment->a, hit.x), n = {0, 0, 0}; // n: of ribbons
     if (!(sr_length2(tangent) > 0))
         tangent = sr_add(sr_add(piece.segment->a[1], piece.segment->a[2]), piece.segment->a[3]);
     float h = width_at(m, &piece, hit.x, d, &n), whole = piece.segment->width0 + hit.x * piece.segment->dh;

@@ -63,7 +63,7 @@ TEST(caustics_of_dispersive_glass_agree_with_path_tracing)
     struct world photons = world_of("LookAt 0 -.3 1.5  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" .5 Film \"rgb\" \"integer xresolution\" 2 \"integer yresolution\" 2 PixelFilter \"box\"\n"
                                     "Integrator \"caustics\" \"integer maxdepth\" 6 \"float radius\" .3 \"integer photonsperiteration\" 50000\nWorldBegin\n" PANE);
     struct world paths = world_of(FLOOR_SEEN_FROM_ABOVE "Integrator \"path\" \"integer maxdepth\" 6\nWorldBegin\n" PANE);
-    struct estimate a = mean_of_seeds(&photons, 4), b = mean_of_seeds(&paths, samples(65536));
+    struct estimate a = mean_of_seeds(&photons, 4), b = mean_of_seeds(&paths, samples(16384));
     double z = z_of((struct estimate){a.mean - b.mean, sqrt(a.error * a.error + b.error * b.error), a.degrees}, 0);
     printf("  glass: photons %.6g +- %.2g, paths %.6g +- %.2g, z %.2f\n", a.mean, a.error, b.mean, b.error, z);
     EXPECT(fabs(z) < 4.9);

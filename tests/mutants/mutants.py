@@ -26,7 +26,7 @@ class Mutant:
 
 MUTANTS = [
     # transport
-    Mutant("the cosine at the surface is dropped", "integrator/path.c", "sr_spectrum fL = f * l->L * sr_abs_cos_theta(wi);",
+    Mutant("the cosine at the surface is dropped", "integrator/path.h", "sr_spectrum fL = f * l->L * sr_abs_cos_theta(wi);",
            "sr_spectrum fL = f * l->L;", "analytic sources* [A2]"),
     Mutant("0.2 % of the light is lost at each bounce", "integrator/path.c", "beta *= s.f * (sr_abs_cos_theta(s.wi) / s.pdf);",
            "beta *= s.f * (0.998f * sr_abs_cos_theta(s.wi) / s.pdf);", "analytic enclosures* [D1]"),
