@@ -37,7 +37,7 @@ function(fuzz_formats source formats)
   endforeach()
 endfunction()
 
-set(description_sources src/import/number.c src/import/pbrt/compose.c src/import/pbrt/description.c src/import/pbrt/names.c src/import/pbrt/files.c
+set(description_sources src/import/number.c src/import/framing.c src/import/pbrt/compose.c src/import/pbrt/description.c src/import/pbrt/names.c src/import/pbrt/files.c
   src/import/pbrt/params.c src/import/pbrt/lexer.c)
 file(GLOB gltf_sources CONFIGURE_DEPENDS src/import/gltf/*.c src/image/*.c)
 fuzz_formats(fuzz_measured.c "merl;rgl;rgl_rgb;polarised;klems;tree;cornell;astm;abg;table;cloud")
@@ -45,4 +45,4 @@ fuzz_formats(fuzz_photometry.c "ies;ies_b;ldt")
 fuzz_formats(fuzz_nanovdb.c "nanovdb")
 fuzz_formats(fuzz_gltf.c "gltf;glb" ${description_sources} ${gltf_sources})
 fuzz_formats(fuzz_mesh.c "obj;stl_text;stl_binary" ${description_sources} src/import/ply.c src/import/ply_header.c src/import/obj.c
-  src/import/obj_materials.c src/import/polygon.c src/import/stl.c src/import/framing.c)
+  src/import/obj_materials.c src/import/polygon.c src/import/stl.c)
