@@ -391,7 +391,10 @@ static sr_status build_options(struct sr_pbrt_build *b)
             bool is_harmless = false;
             for (size_t k = 0; k < sizeof harmless / sizeof *harmless; ++k)
                 is_harmless = is_harmless || strcmp(o->name, harmless[k]) == 0;
-            if (!is_harmless && (is_on || o->value.type != SR_PBRT_BOOL))
+            if (is_harmless)
+                sr_log(b->log, SR_INFO, "%s:%d:%d: Option \"%s\" is about how pbrt works inside: it does nothing here", o->value.where.file, o->value.where.line,
+                       o->value.where.column, o->name);
+            else if (is_on || o->value.type != SR_PBRT_BOOL)
                 sr_pbrt_warn(b->d, o->value.where, "Option \"%s\" is not supported yet and does nothing",
                              o->value.name);
         }
