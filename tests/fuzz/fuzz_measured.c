@@ -48,53 +48,14 @@ static void judge(const uint8_t *data, size_t size)
     sr_arena_free(&arena);
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+static void make_seed(int number, struct seed *seed)
 {
-    judge(data, size);
-    return 0;
+    seed_make(number, seed);
 }
 
-static struct seed seed;
-
-static int write_seed(const char *path)
+static const char *seed_name(int number)
 {
-    FILE *file = fopen(path, "wb");
-    seed_make(FUZZ_SEED, &seed);
-    bool ok = file && fwrite(seed.data, 1, seed.size, file) == seed.size;
-    return file && fclose(file) == 0 && ok ? 0 : 1;
+    return seed_names[number];
 }
 
-#ifdef FUZZ_LIBFUZZER
-int LLVMFuzzerInitialize(int *count, char ***words);
-int LLVMFuzzerInitialize(int *count, char ***words)
-{
-    if (*count == 3 && strcmp((*words)[1], "--seed") == 0)
-        exit(write_seed((*words)[2]));
-    return 0;
-}
-#else
-static struct seed damaged;
-
-int main(int count, char **words)
-{
-    if (count == 3 && strcmp(words[1], "--seed") == 0)
-        return write_seed(words[2]);
-    double seconds = count > 1 ? atof(words[1]) : 10, start = sr_clock_s();
-    uint64_t state = count > 2 ? strtoull(words[2], NULL, 10) : 1, runs = 0;
-    seed_make(FUZZ_SEED, &seed);
-    judge(seed.data, seed.size);
-    for (; sr_clock_s() - start < seconds; ++runs) {
-        damaged = seed;
-        seed_damage(&damaged, &state);
-        uint8_t *exact = malloc(damaged.size ? damaged.size : 1); // so that the sanitizer sees a read past the end
-        if (!exact)
-            return 4;
-        memcpy(exact, damaged.data, damaged.size);
-        judge(exact, damaged.size);
-        free(exact);
-    }
-    printf("%s: %llu files in %.0f s, no finding\n", seed_names[FUZZ_SEED], (unsigned long long)runs, seconds);
-    return 0;
-}
-#endif
+#include "fuzz/driver.h"
