@@ -1,9 +1,48 @@
 /* SPDX-License-Identifier: MIT */
-/* For the files of this room: one pass of samples over a picture. */
+/* For the files of this room: one sample of a picture, one pass of samples over it. */
 #ifndef SR_RENDER_PRIVATE_H
 #define SR_RENDER_PRIVATE_H
 
 #include "render/render.h"
+
+/* ---- picture_sample.c ---- */
+
+/* What all samples of a job take from the sensor's film. */
+struct sr_response {
+    float rgb_from_xyz[3][3];
+    struct sr_lambda_law law;
+    uint32_t buckets;
+    float lambda_min, lambda_step; // [nm] of a bucket
+    float imaging_ratio, bucket_scale; // the latter with the former
+    bool (*ray)(const void *sensor, sr_vec2 raster, sr_vec2 u_lens, float u_time, struct sr_sensor_ray *out);
+};
+
+/* What all samples of a picture share. */
+struct sr_picture {
+    const struct sr_render_job *job;
+    struct sr_film *film;
+    struct sr_response response;
+    struct sr_path_start middle; // a ray of the sensor's, for the footprints of light paths
+    bool has_middle;
+};
+void sr_picture_begin(struct sr_picture *picture, const struct sr_render_job *job, struct sr_film *film);
+/* RGB as the film adds it; false: not finite. buckets: NULL, or added to. first: NULL, or what is seen first. */
+bool sr_picture_sample(const struct sr_picture *picture, uint32_t x, uint32_t y, const struct sr_sampler *sampler, float rgb[3], double *buckets,
+                       struct sr_first_hit *first, struct sr_worker *worker);
+
+/* Where paths from the lights are told, by one thread. */
+struct sr_splatting {
+    const struct sr_picture *picture;
+    uint32_t group;
+    struct sr_target target; // its user is the struct itself: whoever keeps it says where that is
+};
+struct sr_splatting sr_splatting_begin(const struct sr_picture *picture);
+/* The path that goes with sample i of the pixel: all of them are points of one net, in the order of the samples. */
+void sr_splatting_aim(struct sr_splatting *s, uint32_t pixel, uint32_t replicate, uint32_t i);
+/* One path from the lights with the target's numbers. */
+void sr_picture_splat(const struct sr_picture *picture, struct sr_worker *worker);
+
+/* ---- render.c ---- */
 
 struct sr_render_pass {
     struct sr_film *film;            // what the samples are added to
