@@ -15,6 +15,7 @@ import tempfile
 # A folder includes doors of lower floors only; folders of one floor do not know each other. A new floor is a decision record.
 FLOORS = [
     ["base"],
+    ["store"],
     ["math"],
     ["spectrum", "sample"],
     ["measured", "quantity"],
@@ -30,7 +31,7 @@ FLOORS = [
 FLOOR_OF = {room: number for number, floor in enumerate(FLOORS) for room in floor}
 # Only these may include a foreign library's header.
 OWNERS = {"embree3/": "src/scene/", "openexr": "src/image/", "png.h": "src/image/", "jpeglib.h": "src/image/",
-          "zlib.h": "src/base/", "jansson.h": ("tools/", "src/import/gltf/"), "nanovdb/": "src/medium/", "cairo": "src/plot/", "cminpack": "src/lab/", "expat.h": "src/measured/"}
+          "zlib.h": ("src/base/", "src/store/"), "jansson.h": ("tools/", "src/import/gltf/"), "nanovdb/": "src/medium/", "cairo": "src/plot/", "cminpack": "src/lab/", "expat.h": "src/measured/"}
 WORDS = re.compile(r"\b(TODO|FIXME|XXX|HACK)\b")
 MALLOC = re.compile(r"(?<![\w_])(malloc|calloc|realloc|free|aligned_alloc|posix_memalign)\s*\(")
 PRINT_EXIT = re.compile(r"(?<![\w_])(printf|fprintf|puts|perror|exit|abort|_exit)\s*\(")
