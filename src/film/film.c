@@ -110,6 +110,39 @@ void sr_film_block_add_first(struct sr_film_block *b, const struct sr_first_hit 
     }
 }
 
+static void join_first(struct sr_film_block *a, const struct sr_film_block *b)
+{
+    struct sr_first_hit *s = &a->first_sum;
+    const struct sr_first_hit *t = &b->first_sum;
+    if (a->hits == 0)
+        s->material = t->material, s->object = t->object;
+    for (int c = 0; c < 3; ++c) {
+        s->albedo[c] += t->albedo[c];
+        s->rgb[c] += t->rgb[c];
+        a->square[c] += b->square[c];
+    }
+    s->n = sr_add(s->n, t->n);
+    s->ns = sr_add(s->ns, t->ns);
+    s->p = sr_add(s->p, t->p);
+    s->depth += t->depth;
+    s->uv = (sr_vec2){s->uv.x + t->uv.x, s->uv.y + t->uv.y};
+    s->dzdx += t->dzdx;
+    s->dzdy += t->dzdy;
+    a->hits += b->hits;
+    a->samples_seen += b->samples_seen;
+}
+
+void sr_film_block_join(struct sr_film_block *a, const struct sr_film_block *b)
+{
+    for (int c = 0; c < 3; ++c)
+        a->rgb[c] += b->rgb[c];
+    a->n += b->n;
+    a->dropped += b->dropped;
+    a->largest = sr_max(a->largest, b->largest);
+    if (b->samples_seen)
+        join_first(a, b);
+}
+
 void sr_film_store_buckets(struct sr_film *film, uint32_t x, uint32_t y, const double *buckets)
 {
     uint32_t n = film->settings.buckets;

@@ -135,6 +135,9 @@ sr_status sr_film_create(const struct sr_film_settings *settings, bool with_aov,
 void sr_film_destroy(struct sr_film *film);
 void sr_film_block_add(struct sr_film_block *b, const float rgb[3], bool is_finite);
 void sr_film_block_add_first(struct sr_film_block *b, const struct sr_first_hit *h);
+/* Adds b's samples, which come after a's. Sums are taken along a fixed tree of sample numbers, so that they do not depend on who
+ * made which samples (docs/decisions/0018-sums-over-a-tree.md). */
+void sr_film_block_join(struct sr_film_block *a, const struct sr_film_block *b);
 void sr_film_store(struct sr_film *film, uint32_t x, uint32_t y, const struct sr_film_block *b); // x, y in the rendered part
 
 /* Makes room for splats; [B] for each pixel, to be known before. */

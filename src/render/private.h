@@ -42,6 +42,25 @@ void sr_splatting_aim(struct sr_splatting *s, uint32_t pixel, uint32_t replicate
 /* One path from the lights with the target's numbers. */
 void sr_picture_splat(const struct sr_picture *picture, struct sr_worker *worker);
 
+/* ---- block_tree.c ---- */
+
+/* Sums of consecutive samples over the fixed binary tree of their numbers, counted from their block's begin: node (level, k) is
+ * the sum of samples k 2^level <= i < (k + 1) 2^level, its left half joined with its right one. */
+enum { SR_BLOCK_TREE_NODES = 64 }; // at most 31 growing ones, then at most 32 shrinking ones, and the sample that is being made
+struct sr_block_tree {
+    uint32_t first, next;   // samples first <= i < next are in the nodes, from left to right
+    uint32_t depth;         // nodes that there are
+    uint32_t bucket_count;
+    double *buckets;        // [SR_BLOCK_TREE_NODES][bucket_count]; NULL: none
+    struct sr_film_block nodes[SR_BLOCK_TREE_NODES];
+};
+void sr_block_tree_begin(struct sr_block_tree *t, uint32_t first);
+/* The next sample's sums, all zero, to be filled before it is told to be done. */
+struct sr_film_block *sr_block_tree_sample(struct sr_block_tree *t, double **buckets);
+void sr_block_tree_done(struct sr_block_tree *t);
+/* Joins all nodes, from the right, into the first one: the sum of the block where all its samples are there. */
+void sr_block_tree_fold(struct sr_block_tree *t);
+
 /* ---- render.c ---- */
 
 struct sr_render_pass {

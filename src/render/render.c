@@ -5,6 +5,7 @@
 
 #include <pthread.h>
 #include <sched.h>
+#include <string.h>
 
 enum { DEFAULT_TILE = 16, ORDINARY_BLOCKS = 4 };
 struct run {
@@ -24,6 +25,7 @@ struct run {
     uint32_t first_dropped[4];     // x, y, replicate, sample
     bool has_dropped;
     struct sr_film_block *scratch; // tile * tile for each thread
+    struct sr_block_tree *trees;   // one for each thread
     double *buckets;               // as many times the film's buckets; NULL: it has none
     void *shared;                  // of the integrator's samples
 };
@@ -53,13 +55,10 @@ static bool is_cancelled(struct run *run)
 }
 
 /* The samples of one pixel in one block; false: cancelled, nothing of it counts. */
-static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, struct sr_film_block *b, double *buckets, struct sr_splatting *splatting, struct sr_worker *worker)
+static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, struct sr_block_tree *tree, struct sr_splatting *splatting, struct sr_worker *worker)
 {
     const struct sr_render_job *job = run->job;
     const struct sr_render_pass *pass = run->pass;
-    *b = (struct sr_film_block){0};
-    for (uint32_t i = 0; buckets && i < run->picture.response.buckets; ++i)
-        buckets[i] = 0;
     uint32_t pixel = (y - (uint32_t)job->film.y0) * run->film->width + x - (uint32_t)job->film.x0;
     uint32_t replicate = 0, begin = 0, end = pass->counts ? pass->counts[pixel] : pass->per_replicate;
     if (end > 0)
@@ -72,7 +71,10 @@ static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, 
     worker->replicate = replicate;
     if (splatting)
         splatting->group = block % run->film->splats->groups;
+    sr_block_tree_begin(tree, 0);
     for (uint32_t i = begin; i < end; ++i) {
+        double *buckets;
+        struct sr_film_block *b = sr_block_tree_sample(tree, &buckets);
         sampler.sample = i;
         if (splatting) {
             sr_splatting_aim(splatting, pixel, replicate, i);
@@ -87,12 +89,14 @@ static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, 
         sr_film_block_add(b, rgb, is_finite);
         if (job->with_aov)
             sr_film_block_add_first(b, &first);
+        sr_block_tree_done(tree);
         if ((i & 255) == 255 && is_cancelled(run))
             break;
     }
     if (splatting)
-        sr_film_splat_paths(run->film, splatting->group, b->n); // also those of a block that is given up: they have splatted
-    return b->n == end - begin;
+        sr_film_splat_paths(run->film, splatting->group, tree->next); // also those of a block that is given up: they have splatted
+    sr_block_tree_fold(tree);
+    return tree->next == end - begin;
 }
 
 static void tell_progress(struct run *run, double share)
@@ -117,7 +121,7 @@ static void tell_progress(struct run *run, double share)
     pthread_mutex_unlock(&run->progress_lock);
 }
 
-static bool do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratch, double *buckets, struct sr_splatting *splatting, struct sr_worker *worker)
+static bool do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratch, double *buckets, struct sr_block_tree *tree, struct sr_splatting *splatting, struct sr_worker *worker)
 {
     uint32_t tiles = run->tiles_x * run->tiles_y, tile = (uint32_t)(unit % tiles), block = (uint32_t)(unit / tiles);
     uint32_t x0 = tile % run->tiles_x * run->tile, y0 = tile / run->tiles_x * run->tile;
@@ -127,8 +131,11 @@ static bool do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratc
     uint64_t paths = 0;
     for (uint32_t y = y0; y < y1; ++y)
         for (uint32_t x = x0; x < x1; ++x, ++done) {
-            if (is_cancelled(run) || !fill_block(run, left + x, top + y, block, &scratch[done], buckets ? buckets + (size_t)done * run->picture.response.buckets : NULL, splatting, worker))
+            if (is_cancelled(run) || !fill_block(run, left + x, top + y, block, tree, splatting, worker))
                 return false;
+            scratch[done] = tree->nodes[0];
+            if (buckets)
+                memcpy(buckets + (size_t)done * tree->bucket_count, tree->buckets, tree->bucket_count * sizeof *buckets);
             paths += scratch[done].n;
         }
     // blocks of a tile go in by their order; the one before is being made by a thread that does not wait for us
@@ -156,6 +163,7 @@ static void work(void *context, int thread)
     struct run *run = context;
     struct sr_film_block *scratch = run->scratch + (size_t)thread * run->tile * run->tile;
     double *buckets = run->buckets ? run->buckets + (size_t)thread * run->tile * run->tile * run->picture.response.buckets : NULL;
+    struct sr_block_tree *tree = &run->trees[thread];
     uint64_t units = (uint64_t)run->tiles_x * run->tiles_y * run->blocks;
     struct sr_splatting splatting = sr_splatting_begin(&run->picture);
     splatting.target.user = &splatting;
@@ -163,7 +171,7 @@ static void work(void *context, int thread)
     struct sr_worker worker = {.log = thread == 0 ? run->job->log : NULL, .target = splats ? &splatting.target : NULL, .shared = run->shared};
     for (;;) {
         uint64_t unit = atomic_fetch_add_explicit(&run->next_unit, 1, memory_order_relaxed);
-        if (unit >= units || is_cancelled(run) || !do_unit(run, unit, scratch, buckets, splats ? &splatting : NULL, &worker))
+        if (unit >= units || is_cancelled(run) || !do_unit(run, unit, scratch, buckets, tree, splats ? &splatting : NULL, &worker))
             break;
         uint64_t done = atomic_fetch_add_explicit(&run->units_done, 1, memory_order_relaxed) + 1;
         atomic_fetch_add_explicit(&run->rays, worker.rays, memory_order_relaxed);
@@ -199,10 +207,17 @@ sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render
     struct sr_arena arena = {0};
     run.tile_blocks = sr_arena_alloc(&arena, (size_t)run.tiles_x * run.tiles_y * sizeof *run.tile_blocks);
     run.scratch = sr_arena_alloc(&arena, (size_t)threads * run.tile * run.tile * sizeof *run.scratch);
-    run.buckets = run.picture.response.buckets ? sr_arena_alloc(&arena, (size_t)threads * run.tile * run.tile * run.picture.response.buckets * sizeof *run.buckets) : NULL;
-    if (!run.tile_blocks || !run.scratch || (run.picture.response.buckets && !run.buckets)) {
+    run.trees = sr_arena_alloc(&arena, (size_t)threads * sizeof *run.trees);
+    uint32_t buckets = run.picture.response.buckets;
+    run.buckets = buckets ? sr_arena_alloc(&arena, (size_t)threads * run.tile * run.tile * buckets * sizeof *run.buckets) : NULL;
+    double *tree_buckets = buckets ? sr_arena_alloc(&arena, (size_t)threads * SR_BLOCK_TREE_NODES * buckets * sizeof *tree_buckets) : NULL;
+    if (!run.tile_blocks || !run.scratch || !run.trees || (buckets && (!run.buckets || !tree_buckets))) {
         sr_arena_free(&arena);
         return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for %d workers", threads);
+    }
+    for (int i = 0; buckets && i < threads; ++i) {
+        run.trees[i].bucket_count = buckets;
+        run.trees[i].buckets = tree_buckets + (size_t)i * SR_BLOCK_TREE_NODES * buckets;
     }
     const struct sr_integrator *integrator = &job->integrator;
     struct sr_picture_plan plan = {.pixels = (uint64_t)pass->film->width * pass->film->height, .per_replicate = pass->per_replicate, .seed = job->seed,
