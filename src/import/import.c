@@ -92,6 +92,13 @@ sr_status sr_import_pbrt(const char *path, const struct sr_import_options *optio
     return status;
 }
 
+char *sr_import_identity(struct sr_arena *arena, const struct sr_import_options *options, const struct sr_import_result *result)
+{
+    return sr_arena_printf(arena, "hash %016llx\nunits %s\ncamera %s\nvariant %s\nshifted %u %.9g\n", (unsigned long long)result->hash,
+                           result->units == SR_UNITS_SI ? "si" : "photometric", options->camera ? options->camera : "of the scene",
+                           options->variant ? options->variant : "of the scene", options->shifted, options->shift);
+}
+
 sr_status sr_import_pbrt_material(const char *path, const char *name, struct sr_arena *arena,
                                   const struct sr_material **out, struct sr_log *log, struct sr_error *error)
 {

@@ -62,6 +62,9 @@ struct sr_import_result {
 sr_status sr_import_pbrt(const char *path, const struct sr_import_options *options, struct sr_import_result *result,
                          struct sr_log *log, struct sr_error *error);
 void sr_import_result_free(struct sr_import_result *result);
+/* What of a scene makes a picture's bytes, as lines "key value": the hash, and options that change what the bytes mean. NULL: no
+ * memory. */
+char *sr_import_identity(struct sr_arena *arena, const struct sr_import_options *options, const struct sr_import_result *result);
 
 /* ---- scenes as text ---- */
 

@@ -12,6 +12,7 @@
 #include "meter/meter.h"
 #include "quantity/quantity.h"
 #include "sensor/sensor.h"
+#include "store/store.h"
 
 #include <stdatomic.h>
 
@@ -68,6 +69,23 @@ struct sr_render_report {
 
 /* Renders into a new film. Cancelled: SR_CANCELLED, and the film holds what there is. */
 sr_status sr_render(const struct sr_render_job *job, struct sr_film **film, struct sr_render_report *report, struct sr_error *error);
+
+/* ---- identity.c: what makes the bytes, as lines "key value" ---- */
+
+/* scene: lines about the scene (sr_import_identity). NULL: no memory. */
+char *sr_render_identity(struct sr_arena *arena, const struct sr_render_job *job, const char *scene);
+struct sr_render_difference {
+    char key[96], theirs[160], ours[160];
+};
+/* The first key whose values are not the same; false: there is none. */
+bool sr_render_identity_differs(const char *theirs, const char *ours, struct sr_render_difference *d);
+
+/* ---- film_store.c: a film in a store ---- */
+
+/* Sections NAME.pixels, and where the film has them NAME.aov, NAME.buckets, NAME.splats, NAME.paths. */
+sr_status sr_film_put(struct sr_store_out *out, const char *name, const struct sr_film *film, struct sr_error *error);
+/* Into a film of the same settings, made with sr_film_create and sr_film_add_splats; path for the message. */
+sr_status sr_film_get(const struct sr_store_in *in, const char *path, const char *name, struct sr_film *film, struct sr_error *error);
 
 /* One sample of one pixel, alone: RGB as it would be added to the film. Returns whether it is finite. */
 bool sr_render_sample(const struct sr_render_job *job, uint32_t x, uint32_t y, uint32_t replicate, uint32_t sample, float rgb[3],

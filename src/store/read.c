@@ -126,7 +126,7 @@ static sr_status check_data(struct sr_store_in *in, struct sr_error *error)
         const struct place *p = &in->places[in->section];
         uint64_t blocks = store_blocks(p->size);
         in->first_bad = UINT64_MAX;
-        sr_parallel_for(blocks < 64 ? 1 : 0, blocks, check_block, in);
+        sr_parallel_for(blocks < 64 ? 1 : sr_thread_count(), blocks, check_block, in);
         if (in->first_bad != UINT64_MAX)
             return sr_fail(error, SR_ERROR_INPUT, "%s: is damaged: section \"%s\" does not match its checksum in the block at byte %llu of the file", in->path,
                            name_of(in, in->section), (unsigned long long)(p->begin + in->first_bad * SR_STORE_BLOCK));

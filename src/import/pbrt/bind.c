@@ -110,6 +110,8 @@ static sr_status bind_text(struct sr_pbrt_build *b, const struct sr_param *row, 
     const char *text = row->kind == SR_PARAM_FILE ? sr_pbrt_resolve(b, b->arena, p->strings[0], p->where)
                                                   : sr_arena_string(b->arena, p->strings[0]);
     *(const char **)member = text;
+    if (text && row->kind == SR_PARAM_FILE)
+        sr_pbrt_hash_file(b, text);
     return text ? SR_OK : sr_pbrt_no_memory(b);
 }
 

@@ -93,6 +93,8 @@ sr_status sr_pbrt_unsupported(struct sr_pbrt_build *b, const struct sr_pbrt_enti
 
 /* files.c */
 char *sr_pbrt_resolve(struct sr_pbrt_build *b, struct sr_arena *arena, const char *name, struct sr_location where);
+/* Adds to the scene's hash what is in a file that a model reads by itself; images are known by those who decode them. */
+void sr_pbrt_hash_file(struct sr_pbrt_build *b, const char *path);
 
 /* spectra.c: the value of a parameter as a spectrum of one kind (ALBEDO, UNBOUNDED, ILLUMINANT). */
 sr_status sr_pbrt_spectrum(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p,

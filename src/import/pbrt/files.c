@@ -34,3 +34,18 @@ uint64_t sr_pbrt_hash(uint64_t hash, const void *data, size_t size)
         }
     }
 }
+
+void sr_pbrt_hash_file(struct sr_pbrt_build *b, const char *path)
+{
+    static const char *const images[] = {".exr", ".png", ".jpg", ".jpeg", ".tga", ".hdr", ".pfm", ".qoi"};
+    for (size_t i = 0; i < sizeof images / sizeof images[0]; ++i)
+        if (sr_path_has_ending(path, images[i]))
+            return;
+    char *data;
+    size_t size;
+    struct sr_error ignored = {0}; // whoever wants the file will say so
+    if (sr_pbrt_memory_file(b->d, path) || sr_file_read(path, (size_t)64 << 30, &data, &size, &ignored) != SR_OK)
+        return;
+    b->hash = sr_pbrt_hash(b->hash, data, size);
+    sr_free(data);
+}

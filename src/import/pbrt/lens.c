@@ -108,6 +108,9 @@ static sr_status read_aperture(struct sr_pbrt_build *b, const char *name, struct
             return sr_pbrt_no_memory(b);
         if (sr_image_read(path, &image, &inner) != SR_OK || sr_image_to_float(image, &inner) != SR_OK)
             return sr_pbrt_fail(b->d, where, b->error, inner.status, "aperture: %s", inner.text);
+        uint64_t size[2] = {image->width, image->height};
+        b->hash = sr_pbrt_hash(b->hash, size, sizeof size);
+        b->hash = sr_pbrt_hash(b->hash, image->floats, (size_t)image->width * image->height * image->channel_count * sizeof(float));
         int rgb[3] = {0, 0, 0};
         sr_image_find_rgb(image, rgb);
         lens->aperture_width = image->width;

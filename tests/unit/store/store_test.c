@@ -66,6 +66,14 @@ static bool has_seed(const char *path, size_t a, size_t b, uint64_t seed)
     return ok;
 }
 
+static void flip(int fd, uint64_t bit)
+{
+    unsigned char byte;
+    EXPECT(pread(fd, &byte, 1, (off_t)(bit / 8)) == 1);
+    byte ^= (unsigned char)(1 << bit % 8);
+    EXPECT(pwrite(fd, &byte, 1, (off_t)(bit / 8)) == 1);
+}
+
 TEST(what_is_put_comes_back)
 {
     static const size_t sizes[] = {0, 1, 63, 64, 65, 65535, 65536, 65537, 200000};
@@ -76,6 +84,12 @@ TEST(what_is_put_comes_back)
     }
     write_store(path, 5 << 20, 100, 9); // checked by several threads
     EXPECT(has_seed(path, 5 << 20, 100, 9));
+    struct sr_error error;
+    int fd = open(path, O_RDWR);
+    EXPECT(fd >= 0);
+    flip(fd, 8 * (4 << 20));
+    EXPECT(!opens(path, &error) && strstr(error.text, "section \"a\""));
+    close(fd);
     EXPECT(sr_store_is_store(path) && !sr_store_is_store(test_folder()) && !sr_store_is_store(in_folder("absent")));
     EXPECT(!sr_file_exists(in_folder("back.new")));
 }
@@ -92,14 +106,6 @@ TEST(sections_can_be_listed)
     EXPECT(sr_store_section(in, 2, &name, &size) && strcmp(name, "b") == 0 && size == 20);
     EXPECT(!sr_store_section(in, 3, &name, &size));
     sr_store_close(in);
-}
-
-static void flip(int fd, uint64_t bit)
-{
-    unsigned char byte;
-    EXPECT(pread(fd, &byte, 1, (off_t)(bit / 8)) == 1);
-    byte ^= (unsigned char)(1 << bit % 8);
-    EXPECT(pwrite(fd, &byte, 1, (off_t)(bit / 8)) == 1);
 }
 
 static void expect_found(const char *path, int fd, uint64_t bit)

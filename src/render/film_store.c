@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT */
+/* A film as sections of a store: its arrays as they lie in memory. */
+#include "render/render.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* The splats' counters: groups, paths of each group, dropped. */
+enum { PATHS_COUNT = SR_SPLAT_GROUPS + 2 };
+
+struct part {
+    const char *name;
+    void *data;
+    size_t size; // [B]
+};
+enum { FILM_PARTS = 5 };
+
+/* Its arrays; those that it has not got are NULL. */
+static void parts_of(const struct sr_film *film, uint64_t paths[PATHS_COUNT], struct part parts[FILM_PARTS])
+{
+    size_t n = (size_t)film->width * film->height;
+    const struct sr_film_splats *s = film->splats;
+    parts[0] = (struct part){"pixels", film->pixels, n * sizeof *film->pixels};
+    parts[1] = (struct part){"aov", film->aov, n * sizeof *film->aov};
+    parts[2] = (struct part){"buckets", film->buckets, n * film->settings.buckets * sizeof *film->buckets};
+    parts[3] = (struct part){"splats", s ? s->words : NULL, s ? n * sr_film_splats_B(s->groups) : 0};
+    parts[4] = (struct part){"paths", s ? paths : NULL, PATHS_COUNT * sizeof *paths};
+}
+
+sr_status sr_film_put(struct sr_store_out *out, const char *name, const struct sr_film *film, struct sr_error *error)
+{
+    uint64_t paths[PATHS_COUNT] = {0};
+    struct part parts[FILM_PARTS];
+    if (film->splats) {
+        paths[0] = film->splats->groups;
+        memcpy(&paths[1], film->splats->paths, sizeof film->splats->paths);
+        paths[PATHS_COUNT - 1] = film->splats->dropped;
+    }
+    parts_of(film, paths, parts);
+    sr_status status = SR_OK;
+    for (int i = 0; i < FILM_PARTS && status == SR_OK; ++i) {
+        char section[SR_STORE_NAME];
+        snprintf(section, sizeof section, "%s.%s", name, parts[i].name);
+        if (parts[i].data)
+            status = sr_store_put(out, section, parts[i].data, parts[i].size, error);
+    }
+    return status;
+}
+
+sr_status sr_film_get(const struct sr_store_in *in, const char *path, const char *name, struct sr_film *film, struct sr_error *error)
+{
+    uint64_t paths[PATHS_COUNT];
+    struct part parts[FILM_PARTS];
+    parts_of(film, paths, parts);
+    for (int i = 0; i < FILM_PARTS; ++i) {
+        char section[SR_STORE_NAME];
+        size_t size;
+        snprintf(section, sizeof section, "%s.%s", name, parts[i].name);
+        const void *data = sr_store_get(in, section, &size);
+        if (!data != !parts[i].data || (data && size != parts[i].size))
+            return sr_fail(error, SR_ERROR_INPUT, "%s: its section \"%s\" has %zu bytes, and this picture's has %zu", path, section, size,
+                           parts[i].data ? parts[i].size : 0);
+        if (data)
+            memcpy(parts[i].data, data, size);
+    }
+    if (!film->splats)
+        return SR_OK;
+    if (paths[0] != film->splats->groups)
+        return sr_fail(error, SR_ERROR_INPUT, "%s: has %llu groups of paths from the lights, and this picture %u", path, (unsigned long long)paths[0],
+                       film->splats->groups);
+    memcpy(film->splats->paths, &paths[1], sizeof film->splats->paths);
+    film->splats->dropped = paths[PATHS_COUNT - 1];
+    return SR_OK;
+}
