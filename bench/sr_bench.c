@@ -7,6 +7,7 @@
  *   time to read, to build the acceleration structure, peak memory.
  * Each case runs in a process of its own, so that its peak memory is its own. --bsdf times the scattering models instead. */
 #include "bsdf_bench.h"
+#include "scale_bench.h"
 #include "import/import.h"
 #include "render/render.h"
 
@@ -193,9 +194,10 @@ int main(int argc, char **argv)
 {
     static const struct option options[] = {
         {"case", required_argument, NULL, 'c'}, {"scene", required_argument, NULL, 'f'}, {"spp", required_argument, NULL, 's'}, {"size", required_argument, NULL, 'z'},
-        {"runs", required_argument, NULL, 'r'}, {"folder", required_argument, NULL, 'd'}, {"bsdf", optional_argument, NULL, 'b'}, {"help", no_argument, NULL, 'h'}, {NULL, 0, NULL, 0},
+        {"runs", required_argument, NULL, 'r'}, {"folder", required_argument, NULL, 'd'}, {"bsdf", optional_argument, NULL, 'b'}, {"scale", optional_argument, NULL, 'g'}, {"figure", required_argument, NULL, 'i'}, {"help", no_argument, NULL, 'h'}, {NULL, 0, NULL, 0},
     };
     struct settings s = {.folder = SR_BENCH_BUILD_DIR "/bench-scenes", .spp = 16, .size = 256, .runs = 3, .seed = 1};
+    const char *scale = NULL, *figure = NULL;
     int option;
     while ((option = getopt_long(argc, argv, "h", options, NULL)) != -1)
         switch (option) {
@@ -206,8 +208,10 @@ int main(int argc, char **argv)
         case 'r': s.runs = (int)strtol(optarg, NULL, 10); break;
         case 'd': s.folder = optarg; break;
         case 'b': return bench_bsdfs(optarg);
+        case 'g': scale = optarg ? optarg : ""; break;
+        case 'i': figure = optarg; break;
         default:
-            printf("Usage: sr_bench --bsdf[=MODEL]\n       sr_bench [--case cornell|mesh|glossy|emitters|load] [--scene FILE] [--spp N] [--size PIXELS] [--runs N] [--folder SCENES]\n");
+            printf("Usage: sr_bench --bsdf[=MODEL]\n       sr_bench --scale[=triangles|lights|depth|pixels|threads] [--figure FILE.svg|.png] [--runs N]\n       sr_bench [--case cornell|mesh|glossy|emitters|load] [--scene FILE] [--spp N] [--size PIXELS] [--runs N] [--folder SCENES]\n");
             return option == 'h' ? 0 : 2;
         }
     s.runs = s.runs < 1 ? 1 : s.runs > MAX_RUNS ? MAX_RUNS : s.runs;
@@ -217,6 +221,8 @@ int main(int argc, char **argv)
         fprintf(stderr, "sr_bench: the scenes cannot be made in %s\n", s.folder);
         return 1;
     }
+    if (scale)
+        return bench_scale(*scale ? scale : NULL, s.folder, s.runs, figure);
     int failed = 0;
     for (int i = 0; i < CASES; ++i) {
         if (s.only && strcmp(s.only, cases[i]) != 0)
