@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
+#define _POSIX_C_SOURCE 200809L
 #include "test.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -11,9 +13,21 @@
 static struct CMUnitTest tests[MAX_TESTS];
 static size_t test_count;
 
+static double processor_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+// slow tests say so, for whoever wants the suite to be faster
 static void run(void **state)
 {
+    double start = processor_s();
     (*(void (**)(void))state)();
+    double taken = processor_s() - start;
+    if (taken >= 2)
+        fprintf(stderr, "             %.1f s of processor time\n", taken);
 }
 
 void test_register(const char *file, const char *name, void (*run_test)(void))
