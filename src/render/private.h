@@ -70,10 +70,23 @@ struct sr_render_pass {
     uint32_t per_replicate;          // samples of a block; 0: the blocks are parts of one net of job->spp samples
     const uint32_t *counts;          // NULL, or instead of per_replicate for each pixel
     double start_s;                  // of the whole work
+    struct sr_render_part *part;     // NULL, or what takes the sums of the samples in range; the film then takes splats only
+    struct sr_render_range range;
     double share_begin, share_end;   // [1] what of the whole work this pass is, for progress
 };
 /* Adds to the report. SR_CANCELLED: the film holds what there is. */
 sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render_pass *pass, struct sr_render_report *report, struct sr_error *error);
+
+/* Whether the sample x, y, replicate, number comes before the other, in picture order. */
+bool sr_render_is_earlier(const uint32_t a[4], const uint32_t b[4]);
+
+/* ---- part.c ---- */
+
+sr_status sr_part_create(const struct sr_render_job *job, uint32_t blocks, struct sr_render_range range, struct sr_render_part **out, struct sr_error *error);
+struct sr_film *sr_part_splats_film(struct sr_render_part *part); // what the pass's film is
+struct sr_render_report *sr_part_report(struct sr_render_part *part);
+/* Keeps a pixel's sums of the samples of a block that the part has. Threads may call it for different pixels or blocks. */
+void sr_part_keep(struct sr_render_part *part, uint32_t block, uint32_t x, uint32_t y, const struct sr_block_tree *tree);
 
 /* adaptive.c */
 sr_status sr_render_adaptive(const struct sr_render_job *job, struct sr_film **film, struct sr_render_report *report, struct sr_error *error);

@@ -14,6 +14,7 @@ struct run {
     struct sr_film *film;
     struct sr_picture picture;
     uint32_t tile, tiles_x, tiles_y, blocks;
+    uint32_t first_block, end_block; // that are to be made
     atomic_ullong next_unit;
     atomic_uint *tile_blocks;      // how many blocks of a tile are in the film
     atomic_ullong rays, shadow_rays, vertices, paths, dropped;
@@ -32,16 +33,23 @@ struct run {
 
 /* ---- one unit: a tile times a block ---- */
 
+bool sr_render_is_earlier(const uint32_t a[4], const uint32_t b[4])
+{
+    static const int order[4] = {1, 0, 2, 3};
+    for (int i = 0; i < 4; ++i)
+        if (a[order[i]] != b[order[i]])
+            return a[order[i]] < b[order[i]];
+    return false;
+}
+
 static void remember_dropped(struct run *run, uint32_t x, uint32_t y, uint32_t replicate, uint32_t sample)
 {
     atomic_fetch_add_explicit(&run->dropped, 1, memory_order_relaxed);
     pthread_mutex_lock(&run->progress_lock);
     // the first in picture order, so that the report does not depend on who was faster
     uint32_t now[4] = {x, y, replicate, sample};
-    uint32_t *old = run->first_dropped;
-    if (!run->has_dropped || y < old[1] || (y == old[1] && (x < old[0] || (x == old[0] && (replicate < old[2] || (replicate == old[2] && sample < old[3])))))) {
-        for (int i = 0; i < 4; ++i)
-            old[i] = now[i];
+    if (!run->has_dropped || sr_render_is_earlier(now, run->first_dropped)) {
+        memcpy(run->first_dropped, now, sizeof now);
         run->has_dropped = true;
     }
     pthread_mutex_unlock(&run->progress_lock);
@@ -52,6 +60,14 @@ static bool is_cancelled(struct run *run)
     if (run->job->cancel && atomic_load_explicit(run->job->cancel, memory_order_relaxed))
         atomic_store_explicit(&run->cancelled, true, memory_order_relaxed);
     return atomic_load_explicit(&run->cancelled, memory_order_relaxed);
+}
+
+/* Of a block's samples begin <= i < end, those that the pass is to take: all, or those of a part. */
+static void clip(const struct sr_render_pass *pass, uint64_t block_begin, uint32_t *begin, uint32_t *end)
+{
+    int64_t lo = (int64_t)pass->range.begin - (int64_t)block_begin, hi = (int64_t)pass->range.end - (int64_t)block_begin;
+    *begin = lo > *begin ? (uint32_t)lo : *begin;
+    *end = hi < *end ? (uint32_t)hi : *end;
 }
 
 /* The samples of one pixel in one block; false: cancelled, nothing of it counts. */
@@ -67,12 +83,15 @@ static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, 
         begin = (uint32_t)((uint64_t)job->spp * block / run->blocks);
         end = (uint32_t)((uint64_t)job->spp * (block + 1) / run->blocks);
     }
-    struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, x, y, replicate, begin);
+    uint32_t from = begin, to = end;
+    if (pass->part)
+        clip(pass, pass->per_replicate ? (uint64_t)block * pass->per_replicate : 0, &from, &to);
+    struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, x, y, replicate, from);
     worker->replicate = replicate;
     if (splatting)
         splatting->group = block % run->film->splats->groups;
-    sr_block_tree_begin(tree, 0);
-    for (uint32_t i = begin; i < end; ++i) {
+    sr_block_tree_begin(tree, from - begin);
+    for (uint32_t i = from; i < to; ++i) {
         double *buckets;
         struct sr_film_block *b = sr_block_tree_sample(tree, &buckets);
         sampler.sample = i;
@@ -94,9 +113,10 @@ static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, 
             break;
     }
     if (splatting)
-        sr_film_splat_paths(run->film, splatting->group, tree->next); // also those of a block that is given up: they have splatted
-    sr_block_tree_fold(tree);
-    return tree->next == end - begin;
+        sr_film_splat_paths(run->film, splatting->group, tree->next - tree->first); // also those of a block that is given up: they have splatted
+    if (to - from == end - begin)
+        sr_block_tree_fold(tree);
+    return tree->next == to - begin;
 }
 
 static void tell_progress(struct run *run, double share)
@@ -123,7 +143,7 @@ static void tell_progress(struct run *run, double share)
 
 static bool do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratch, double *buckets, struct sr_block_tree *tree, struct sr_splatting *splatting, struct sr_worker *worker)
 {
-    uint32_t tiles = run->tiles_x * run->tiles_y, tile = (uint32_t)(unit % tiles), block = (uint32_t)(unit / tiles);
+    uint32_t tiles = run->tiles_x * run->tiles_y, tile = (uint32_t)(unit % tiles), block = run->first_block + (uint32_t)(unit / tiles);
     uint32_t x0 = tile % run->tiles_x * run->tile, y0 = tile / run->tiles_x * run->tile;
     uint32_t x1 = x0 + run->tile < run->film->width ? x0 + run->tile : run->film->width;
     uint32_t y1 = y0 + run->tile < run->film->height ? y0 + run->tile : run->film->height;
@@ -133,11 +153,19 @@ static bool do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratc
         for (uint32_t x = x0; x < x1; ++x, ++done) {
             if (is_cancelled(run) || !fill_block(run, left + x, top + y, block, tree, splatting, worker))
                 return false;
+            paths += tree->next - tree->first;
+            if (run->pass->part) {
+                sr_part_keep(run->pass->part, block, x, y, tree);
+                continue;
+            }
             scratch[done] = tree->nodes[0];
             if (buckets)
                 memcpy(buckets + (size_t)done * tree->bucket_count, tree->buckets, tree->bucket_count * sizeof *buckets);
-            paths += scratch[done].n;
         }
+    if (run->pass->part) {
+        atomic_fetch_add_explicit(&run->paths, paths, memory_order_relaxed);
+        return true;
+    }
     // blocks of a tile go in by their order; the one before is being made by a thread that does not wait for us
     while (atomic_load_explicit(&run->tile_blocks[tile], memory_order_acquire) != block) {
         if (is_cancelled(run))
@@ -164,7 +192,7 @@ static void work(void *context, int thread)
     struct sr_film_block *scratch = run->scratch + (size_t)thread * run->tile * run->tile;
     double *buckets = run->buckets ? run->buckets + (size_t)thread * run->tile * run->tile * run->picture.response.buckets : NULL;
     struct sr_block_tree *tree = &run->trees[thread];
-    uint64_t units = (uint64_t)run->tiles_x * run->tiles_y * run->blocks;
+    uint64_t units = (uint64_t)run->tiles_x * run->tiles_y * (run->end_block - run->first_block);
     struct sr_splatting splatting = sr_splatting_begin(&run->picture);
     splatting.target.user = &splatting;
     bool splats = run->film->splats != NULL;
@@ -197,9 +225,22 @@ static void add_to_report(const struct run *run, struct sr_render_report *report
     report->is_complete = !run->cancelled;
 }
 
+/* Which block the sample of this number is in. */
+static uint32_t block_of(uint32_t spp, uint32_t blocks, uint32_t sample)
+{
+    uint32_t b = (uint32_t)((uint64_t)sample * blocks / spp);
+    while ((uint64_t)spp * (b + 1) / blocks <= sample)
+        ++b;
+    return b;
+}
+
 sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render_pass *pass, struct sr_render_report *report, struct sr_error *error)
 {
-    struct run run = {.job = job, .pass = pass, .film = pass->film, .tile = job->tile > 0 ? (uint32_t)job->tile : DEFAULT_TILE, .blocks = pass->blocks};
+    struct run run = {.job = job, .pass = pass, .film = pass->film, .tile = job->tile > 0 ? (uint32_t)job->tile : DEFAULT_TILE, .blocks = pass->blocks, .end_block = pass->blocks};
+    if (pass->part) {
+        run.first_block = block_of(job->spp, pass->blocks, pass->range.begin);
+        run.end_block = block_of(job->spp, pass->blocks, pass->range.end - 1) + 1;
+    }
     sr_picture_begin(&run.picture, job, pass->film);
     run.tiles_x = (pass->film->width + run.tile - 1) / run.tile;
     run.tiles_y = (pass->film->height + run.tile - 1) / run.tile;
@@ -239,12 +280,15 @@ sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render
     return run.cancelled ? SR_CANCELLED : SR_OK;
 }
 
-sr_status sr_render(const struct sr_render_job *wanted, struct sr_film **film, struct sr_render_report *report, struct sr_error *error)
+/* Whether paths from the lights bring light to any place of the picture. */
+static bool has_splats(const struct sr_render_job *job)
 {
-    struct sr_render_job own = *wanted, *job = &own;
-    own.with_aov |= own.film.is_gbuffer;
-    *film = NULL;
-    *report = (struct sr_render_report){0};
+    return job->integrator.model->splats && job->sensor.model->connect && !job->film.buckets;
+}
+
+/* What cannot be rendered. */
+static sr_status check(const struct sr_render_job *job, struct sr_error *error)
+{
     if (job->spp < 1)
         return sr_fail(error, SR_ERROR_USAGE, "at least one sample per pixel is needed");
     if (job->integrator.model == &sr_integrator_quadrature)
@@ -256,27 +300,69 @@ sr_status sr_render(const struct sr_render_job *wanted, struct sr_film **film, s
     if (job->integrator.model->splat && job->film.buckets)
         return sr_fail(error, SR_ERROR_USAGE, "the estimator %s brings light to the picture as colours, which a film of spectra cannot take; use path or bdpt",
                        job->integrator.model->name);
-    bool splats = job->integrator.model->splats && job->sensor.model->connect && !job->film.buckets;
-    if (job->adaptive.is_on && (splats || job->integrator.model->begin))
+    if (job->adaptive.is_on && (has_splats(job) || job->integrator.model->begin))
         return sr_fail(error, SR_ERROR_USAGE, "the estimator %s brings light to the whole picture at a time, and cannot spend samples on some pixels alone",
                        job->integrator.model->name);
-    if (job->adaptive.is_on)
-        return sr_render_adaptive(job, film, report, error);
-    if (job->replicates == 1 || (job->replicates && job->spp % job->replicates != 0))
+    if (!job->adaptive.is_on && (job->replicates == 1 || (job->replicates && job->spp % job->replicates != 0)))
         return sr_fail(error, SR_ERROR_USAGE, "%u samples per pixel cannot be split into %u replicates of equal size (2 or more)", job->spp, job->replicates);
-    if (sr_film_create(&job->film, job->with_aov, film, error) != SR_OK)
-        return error->status;
-    struct sr_render_pass pass = {.film = *film, .start_s = sr_clock_s(), .share_end = 1};
+    return SR_OK;
+}
+
+static struct sr_render_pass pass_of(const struct sr_render_job *job)
+{
     // where samples of a number share something over the whole picture, all pixels take them one after the other
     uint32_t blocks = job->spp < ORDINARY_BLOCKS || job->integrator.model->begin ? job->spp : ORDINARY_BLOCKS;
-    pass.blocks = job->replicates ? job->replicates : blocks;
-    pass.per_replicate = job->replicates ? job->spp / job->replicates : 0;
-    sr_status status = splats ? sr_film_add_splats(*film, pass.blocks, error) : SR_OK;
+    return (struct sr_render_pass){.start_s = sr_clock_s(), .share_end = 1, .blocks = job->replicates ? job->replicates : blocks,
+                                   .per_replicate = job->replicates ? job->spp / job->replicates : 0};
+}
+
+sr_status sr_render(const struct sr_render_job *wanted, struct sr_film **film, struct sr_render_report *report, struct sr_error *error)
+{
+    struct sr_render_job own = *wanted, *job = &own;
+    own.with_aov |= own.film.is_gbuffer;
+    *film = NULL;
+    *report = (struct sr_render_report){0};
+    if (check(job, error) != SR_OK)
+        return error->status;
+    if (job->adaptive.is_on)
+        return sr_render_adaptive(job, film, report, error);
+    if (sr_film_create(&job->film, job->with_aov, film, error) != SR_OK)
+        return error->status;
+    struct sr_render_pass pass = pass_of(job);
+    pass.film = *film;
+    sr_status status = has_splats(job) ? sr_film_add_splats(*film, pass.blocks, error) : SR_OK;
     if (status == SR_OK)
         status = sr_render_pass(job, &pass, report, error);
     if (status != SR_OK && status != SR_CANCELLED) {
         sr_film_destroy(*film);
         *film = NULL;
     }
+    return status;
+}
+
+sr_status sr_render_samples(const struct sr_render_job *wanted, struct sr_render_range range, struct sr_render_part **part, struct sr_error *error)
+{
+    struct sr_render_job own = *wanted, *job = &own;
+    own.with_aov |= own.film.is_gbuffer;
+    *part = NULL;
+    if (check(job, error) != SR_OK)
+        return error->status;
+    if (job->adaptive.is_on)
+        return sr_fail(error, SR_ERROR_USAGE, "adaptive sampling decides by the values of all samples which ones follow: its pictures cannot be made in parts");
+    if (range.begin >= range.end || range.end > job->spp)
+        return sr_fail(error, SR_ERROR_USAGE, "samples %u-%u: a range within 0-%u was expected", range.begin, range.end, job->spp);
+    struct sr_render_pass pass = pass_of(job);
+    pass.range = range;
+    sr_status status = sr_part_create(job, pass.blocks, range, &pass.part, error);
+    if (status != SR_OK)
+        return status;
+    pass.film = sr_part_splats_film(pass.part);
+    status = has_splats(job) ? sr_film_add_splats(pass.film, pass.blocks, error) : SR_OK;
+    if (status == SR_OK)
+        status = sr_render_pass(job, &pass, sr_part_report(pass.part), error);
+    if (status == SR_OK)
+        *part = pass.part;
+    else
+        sr_render_part_destroy(pass.part);
     return status;
 }

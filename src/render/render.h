@@ -87,6 +87,37 @@ sr_status sr_film_put(struct sr_store_out *out, const char *name, const struct s
 /* Into a film of the same settings, made with sr_film_create and sr_film_add_splats; path for the message. */
 sr_status sr_film_get(const struct sr_store_in *in, const char *path, const char *name, struct sr_film *film, struct sr_error *error);
 
+/* ---- parts of a picture: some of its samples, rendered anywhere ----
+ *
+ * Each pixel's samples are numbered 0 <= i < spp; with replicates, sample k of replicate r is number r spp / replicates + k. Parts
+ * of disjoint ranges that cover all numbers, in any order, become the picture that sr_render makes, to the last bit
+ * (docs/decisions/0018-sums-over-a-tree.md). */
+struct sr_render_part;
+struct sr_render_range {
+    uint32_t begin, end; // begin <= i < end
+};
+/* Renders these samples of each pixel. Fails for adaptive jobs, whose samples depend on each other's values. Cancelled:
+ * SR_CANCELLED, and there is no part. */
+sr_status sr_render_samples(const struct sr_render_job *job, struct sr_render_range range, struct sr_render_part **part, struct sr_error *error);
+void sr_render_part_destroy(struct sr_render_part *part); // NULL is allowed
+/* The number-th of the ranges that a part has, in ascending order; false where there are no more. */
+bool sr_render_part_range(const struct sr_render_part *part, size_t number, struct sr_render_range *range);
+bool sr_render_part_is_complete(const struct sr_render_part *part);
+/* Moves the samples of `from` into `to`. Parts that have a sample in common or are not of one picture's shape are refused, and
+ * then nothing has been moved; whether they are of one picture's identity is the caller's to know. */
+sr_status sr_render_part_add(struct sr_render_part *to, struct sr_render_part *from, struct sr_error *error);
+/* The picture of the samples that are there; it belongs to the part. */
+struct sr_film *sr_render_part_film(struct sr_render_part *part);
+const struct sr_render_report *sr_render_part_report(const struct sr_render_part *part);
+bool sr_render_part_is_replicated(const struct sr_render_part *part);
+/* Samples of each pixel of the whole picture. */
+uint32_t sr_render_part_spp(const struct sr_render_part *part);
+/* Two texts go with a part: the identity of what was rendered, and whatever else is to be told of the picture. */
+sr_status sr_render_part_write(const struct sr_render_part *part, const char *identity, const char *about, const char *path, struct sr_error *error);
+sr_status sr_render_part_read(const char *path, struct sr_render_part **part, struct sr_error *error);
+const char *sr_render_part_identity(const struct sr_render_part *part); // of a part that has been read
+const char *sr_render_part_about(const struct sr_render_part *part);
+
 /* One sample of one pixel, alone: RGB as it would be added to the film. Returns whether it is finite. */
 bool sr_render_sample(const struct sr_render_job *job, uint32_t x, uint32_t y, uint32_t replicate, uint32_t sample, float rgb[3],
                       struct sr_first_hit *first, struct sr_worker *worker);
