@@ -8,6 +8,7 @@
  * Each case runs in a process of its own, so that its peak memory is its own. --bsdf times the scattering models instead. */
 #include "bsdf_bench.h"
 #include "scale_bench.h"
+#include "targets.h"
 #include "import/import.h"
 #include "render/render.h"
 
@@ -152,32 +153,47 @@ static int run_load(const char *name, const char *path)
     return 0;
 }
 
-static int load_apart(const char *name)
+/* A case in a process of its own, which prints its line; the line, too, is kept. */
+static json_t *lines[CASES + sizeof large_scenes / sizeof *large_scenes];
+static size_t line_count;
+
+static int run_apart(const struct settings *s, const char *name, const char *path)
 {
-    char path[4096];
-    snprintf(path, sizeof path, "%s/scenes/%s.pbrt", SR_BENCH_REFERENCE_DIR, name);
-    if (!sr_file_exists(path)) {
-        fprintf(stderr, "sr_bench: %s is not there: left out\n", path);
-        return 0;
-    }
+    int ends[2];
+    if (pipe(ends) != 0)
+        return 1;
     fflush(stdout);
     pid_t child = fork();
-    if (child == 0)
-        exit(run_load(name, path));
+    if (child == 0) {
+        dup2(ends[1], STDOUT_FILENO);
+        close(ends[0]);
+        exit(s ? run_case(s, name, path) : run_load(name, path));
+    }
+    close(ends[1]);
+    char line[4096];
+    FILE *from = fdopen(ends[0], "r");
+    while (from && fgets(line, sizeof line, from)) {
+        fputs(line, stdout);
+        json_t *object = json_loads(line, 0, NULL);
+        if (object && line_count < sizeof lines / sizeof *lines)
+            lines[line_count++] = object;
+        else
+            json_decref(object);
+    }
+    if (from)
+        fclose(from);
     int status = 1;
     return child < 0 || waitpid(child, &status, 0) < 0 || !WIFEXITED(status) ? 1 : WEXITSTATUS(status);
 }
 
-static int run_apart(const struct settings *s, const char *name, const char *path)
+static int load_apart(const char *name)
 {
-    fflush(stdout);
-    pid_t child = fork();
-    if (child == 0)
-        exit(run_case(s, name, path));
-    int status = 1;
-    if (child < 0 || waitpid(child, &status, 0) < 0)
-        return 1;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+    char path[4096];
+    snprintf(path, sizeof path, "%s/scenes/%s.pbrt", SR_BENCH_REFERENCE_DIR, name);
+    if (sr_file_exists(path))
+        return run_apart(NULL, name, path);
+    fprintf(stderr, "sr_bench: %s is not there: left out\n", path);
+    return 0;
 }
 
 static bool make_scenes(const char *folder)
@@ -233,5 +249,8 @@ int main(int argc, char **argv)
     }
     for (size_t i = 0; i < sizeof large_scenes / sizeof *large_scenes && (!s.only || strcmp(s.only, "load") == 0); ++i)
         failed |= load_apart(large_scenes[i]);
+    print_targets(stderr, lines, line_count);
+    for (size_t i = 0; i < line_count; ++i)
+        json_decref(lines[i]);
     return failed;
 }
