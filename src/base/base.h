@@ -50,6 +50,10 @@ void *sr_alloc(size_t size); // 64-byte aligned, zeroed; NULL when there is no m
 void *sr_realloc(void *p, size_t old_size, size_t new_size); // the same; grown bytes are zeroed; on failure p stays valid
 void sr_free(void *p);
 uint64_t sr_alloc_count(void); // how often sr_alloc and sr_realloc have been called by this process
+/* For tests: what has not been freed; and of the allocations to come, `count` fail after the next `after` of them. */
+uint64_t sr_alloc_live(void);
+void sr_alloc_fail(uint64_t after, uint64_t count);
+bool sr_alloc_allowed(void); // counts one that a library makes by itself; false: it is to fail
 
 /* A place for things that are freed together. Zeroed = empty and valid. */
 struct sr_arena {

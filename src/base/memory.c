@@ -9,7 +9,8 @@
 #include <string.h>
 #include <sys/mman.h>
 
-static atomic_ullong alloc_count;
+static atomic_ullong alloc_count, free_count;
+static uint64_t fail_first, fail_count; // for tests
 
 /* What is large is read all over: large pages spare the processor most of the looking up of addresses. */
 static const size_t LARGE_PAGE = 2 << 20; // [B]
@@ -19,11 +20,34 @@ static size_t round_up(size_t size, size_t to)
     return (size + to - 1) & ~(to - 1);
 }
 
+static bool count_one(void)
+{
+    return atomic_fetch_add_explicit(&alloc_count, 1, memory_order_relaxed) - fail_first >= fail_count;
+}
+
+static void count_end(bool is_one)
+{
+    atomic_fetch_add_explicit(&free_count, is_one, memory_order_relaxed);
+}
+
+bool sr_alloc_allowed(void)
+{
+    count_end(true);
+    return count_one();
+}
+
+void sr_alloc_fail(uint64_t after, uint64_t count)
+{
+    fail_first = sr_alloc_count() + after;
+    fail_count = count;
+}
+
 void *sr_alloc(size_t size)
 {
-    atomic_fetch_add_explicit(&alloc_count, 1, memory_order_relaxed);
-    if (size > SIZE_MAX / 4)
+    if (!count_one() || size > SIZE_MAX / 4) {
+        count_end(true);
         return NULL;
+    }
     bool is_large = size >= LARGE_PAGE;
     size_t whole = round_up(size ? size : 1, 64);
     void *p = is_large ? aligned_alloc(LARGE_PAGE, round_up(whole, LARGE_PAGE)) : aligned_alloc(64, whole);
@@ -33,6 +57,7 @@ void *sr_alloc(size_t size)
 #endif
     if (p)
         memset(p, 0, whole);
+    count_end(!p);
     return p;
 }
 
@@ -48,7 +73,13 @@ void *sr_realloc(void *p, size_t old_size, size_t new_size)
 
 void sr_free(void *p)
 {
+    count_end(p != NULL);
     free(p);
+}
+
+uint64_t sr_alloc_live(void)
+{
+    return sr_alloc_count() - atomic_load_explicit(&free_count, memory_order_relaxed);
 }
 
 uint64_t sr_alloc_count(void)

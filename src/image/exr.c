@@ -151,6 +151,7 @@ struct chunks {
     exr_context_t exr;
     struct sr_image *image;
     const uint32_t *place;
+    bool is_trial; // chunks are unpacked and left
     exr_decode_pipeline_t pipeline;
     bool is_started;
     exr_result_t (*decompress)(exr_decode_pipeline_t *);
@@ -183,6 +184,8 @@ static exr_result_t read_chunk(struct chunks *k, const exr_chunk_info_t *info, u
     if (x >= image->width || y >= image->height || info->width <= 0 || info->height <= 0 ||
         (uint32_t)info->width > image->width - x || (uint32_t)info->height > image->height - y)
         return EXR_ERR_CORRUPT_CHUNK;
+    if (info->unpacked_size / 1100 > info->packed_size + 64) // no method packs better: it would be memory for nothing
+        return EXR_ERR_CORRUPT_CHUNK;
     exr_result_t result = k->is_started ? exr_decoding_update(k->exr, 0, info, &k->pipeline)
                                         : exr_decoding_initialize(k->exr, 0, info, &k->pipeline);
     bool is_first = !k->is_started;
@@ -193,7 +196,7 @@ static exr_result_t read_chunk(struct chunks *k, const exr_chunk_info_t *info, u
         return EXR_ERR_CORRUPT_CHUNK;
     for (int16_t c = 0; c < k->pipeline.channel_count; c++) {
         exr_coding_channel_info_t *channel = &k->pipeline.channels[c];
-        channel->decode_to_ptr = (uint8_t *)(image->floats + sr_image_index(image, x, y) + k->place[c]);
+        channel->decode_to_ptr = k->is_trial ? NULL : (uint8_t *)(image->floats + sr_image_index(image, x, y) + k->place[c]);
         channel->user_data_type = EXR_PIXEL_FLOAT;
         channel->user_bytes_per_element = 4;
         channel->user_pixel_stride = (int32_t)(image->channel_count * 4);
@@ -297,7 +300,7 @@ static sr_status read_part(exr_context_t exr, struct job *job, struct sr_image *
         status = read_attributes(exr, *image, error);
     }
     if (status == SR_OK) {
-        struct chunks k = {.exr = exr, .image = *image, .place = place};
+        struct chunks k = {.exr = exr, .image = *image, .place = place, .is_trial = sr_image_is_trial(job->source, *image)};
         exr_result_t result = storage == EXR_STORAGE_TILED ? read_tiles(&k) : read_lines(&k, &data);
         if (k.is_started)
             exr_decoding_destroy(exr, &k.pipeline);

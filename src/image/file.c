@@ -30,16 +30,27 @@ bool sr_image_put(struct sr_array *out, const void *bytes, size_t size)
     return true;
 }
 
+static sr_status decode_by(const struct sr_image_codec *codec, struct sr_image_source *source, struct sr_image **image, struct sr_error *error)
+{
+    sr_status status = codec->decode(source, image, error);
+    if (status != SR_OK || !sr_image_is_trial(source, *image))
+        return status;
+    sr_image_free(*image);
+    *image = NULL;
+    source->is_proven = true;
+    return codec->decode(source, image, error);
+}
+
 sr_status sr_image_decode(const char *label, const void *data, size_t size, enum sr_image_encoding encoding,
                           struct sr_image **image, struct sr_error *error)
 {
     *image = NULL;
     if (size == 0)
         return sr_fail(error, SR_ERROR_INPUT, "%s: is empty, an image was expected", label);
-    struct sr_image_source source = {label, data, size, encoding};
+    struct sr_image_source source = {label, data, size, encoding, false};
     for (int i = 0; i < CODECS; i++)
         if (codecs[i]->is_mine && codecs[i]->is_mine(data, size))
-            return codecs[i]->decode(&source, image, error);
+            return decode_by(codecs[i], &source, image, error);
     const struct sr_image_codec *codec = find_by_ending(label);
     if (codec && codec->is_mine)
         return sr_fail(error, SR_ERROR_INPUT, "%s: does not begin like a %s file, or like any image that can be read",
@@ -47,7 +58,7 @@ sr_status sr_image_decode(const char *label, const void *data, size_t size, enum
     if (!codec)
         return sr_fail(error, SR_ERROR_INPUT,
                        "%s: is no image that can be read: EXR, PNG, JPEG, PFM, HDR, QOI or TGA was expected", label);
-    return codec->decode(&source, image, error);
+    return decode_by(codec, &source, image, error);
 }
 
 sr_status sr_image_read_as(const char *path, enum sr_image_encoding encoding, struct sr_image **image,

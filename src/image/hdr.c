@@ -156,7 +156,7 @@ static sr_status decode(const struct sr_image_source *source, struct sr_image **
     uint32_t y = 0;
     for (; ok && y < height; y++) {
         ok = take_row(&c, rgbe, width);
-        float *row = (*image)->floats + (size_t)(h.is_bottom_up ? height - 1 - y : y) * width * 3;
+        float *row = sr_image_row(source, *image, h.is_bottom_up ? height - 1 - y : y);
         for (uint32_t x = 0; ok && x < width; x++)
             put_pixel(&h, rgbe + 4 * (size_t)x, row + 3 * (size_t)(h.is_right_to_left ? width - 1 - x : x));
     }

@@ -42,8 +42,9 @@ static bool pixel_bytes(uint64_t width, uint64_t height, uint32_t channel_count,
            !__builtin_mul_overflow(n, type == SR_IMAGE_FLOATS ? sizeof(float) : 1, size);
 }
 
-sr_status sr_image_create(uint32_t width, uint32_t height, uint32_t channel_count, const char *const *names,
-                          enum sr_image_type type, struct sr_image **image, struct sr_error *error)
+/* With memory for so many of its rows. */
+static sr_status create(uint32_t width, uint32_t height, uint32_t rows, uint32_t channel_count, const char *const *names,
+                        enum sr_image_type type, struct sr_image **image, struct sr_error *error)
 {
     *image = NULL;
     if (width == 0 || height == 0 || channel_count == 0 || width > MAX_SIDE || height > MAX_SIDE ||
@@ -62,7 +63,7 @@ sr_status sr_image_create(uint32_t width, uint32_t height, uint32_t channel_coun
                                   .full_width = width,
                                   .full_height = height};
         made->channels = sr_arena_alloc(&made->arena, channel_count * sizeof *made->channels);
-        void *pixels = made->channels ? sr_alloc(size) : NULL;
+        void *pixels = made->channels ? sr_alloc(size / height * rows) : NULL;
         if (type == SR_IMAGE_FLOATS)
             made->floats = pixels;
         else
@@ -80,6 +81,23 @@ sr_status sr_image_create(uint32_t width, uint32_t height, uint32_t channel_coun
     return SR_OK;
 }
 
+sr_status sr_image_create(uint32_t width, uint32_t height, uint32_t channel_count, const char *const *names,
+                          enum sr_image_type type, struct sr_image **image, struct sr_error *error)
+{
+    return create(width, height, height, channel_count, names, type, image, error);
+}
+
+size_t sr_image_limit_B(size_t file_B)
+{
+    return ((size_t)256 << 20) + (file_B < SIZE_MAX / 4096 ? file_B * 2000 : SIZE_MAX / 2);
+}
+
+/* What a file's size backs, whatever it says. */
+static size_t free_B(const struct sr_image_source *source)
+{
+    return ((size_t)64 << 20) + 16 * source->size;
+}
+
 sr_status sr_image_create_for(const struct sr_image_source *source, uint64_t width, uint64_t height,
                               uint32_t channel_count, const char *const *names, enum sr_image_type type,
                               struct sr_image **image, struct sr_error *error)
@@ -89,17 +107,33 @@ sr_status sr_image_create_for(const struct sr_image_source *source, uint64_t wid
     if (width == 0 || height == 0 || width > MAX_SIDE || height > MAX_SIDE)
         return sr_fail(error, SR_ERROR_INPUT, "%s: tells a size of %llu x %llu pixels, sides of 1 to %d were expected",
                        source->label, (unsigned long long)width, (unsigned long long)height, (int)MAX_SIDE);
-    size_t allowed = ((size_t)256 << 20) + (source->size < SIZE_MAX / 4096 ? source->size * 2000 : SIZE_MAX / 2);
-    if (!pixel_bytes(width, height, channel_count, type, &size) || size > allowed)
+    if (!pixel_bytes(width, height, channel_count, type, &size) || size > sr_image_limit_B(source->size) || size / height > free_B(source))
         return sr_fail(error, SR_ERROR_INPUT,
                        "%s: tells a size of %llu x %llu pixels with %u channels, which its %zu bytes cannot hold",
                        source->label, (unsigned long long)width, (unsigned long long)height, channel_count,
                        source->size);
     struct sr_error why = {0};
-    sr_status status = sr_image_create((uint32_t)width, (uint32_t)height, channel_count, names, type, image, &why);
+    bool is_trial = !source->is_proven && size > free_B(source);
+    sr_status status = create((uint32_t)width, (uint32_t)height, is_trial ? 1 : (uint32_t)height, channel_count, names, type, image, &why);
     if (status == SR_OK)
         (*image)->encoding = source->encoding;
     return status == SR_OK ? status : sr_fail(error, status, "%s: %s", source->label, why.text);
+}
+
+static size_t size_of(const struct sr_image *image, size_t rows)
+{
+    return rows * image->width * image->channel_count * (image->floats ? sizeof(float) : 1);
+}
+
+bool sr_image_is_trial(const struct sr_image_source *source, const struct sr_image *image)
+{
+    return !source->is_proven && size_of(image, image->height) > free_B(source);
+}
+
+void *sr_image_row(const struct sr_image_source *source, const struct sr_image *image, uint32_t y)
+{
+    char *pixels = image->floats ? (char *)image->floats : (char *)image->bytes;
+    return pixels + size_of(image, sr_image_is_trial(source, image) ? 0 : y);
 }
 
 void sr_image_free(struct sr_image *image)

@@ -90,10 +90,12 @@ sr_status sr_image_to_float(struct sr_image *image, struct sr_error *error);
  *   PFM   floats, both byte orders.                   HDR  RGBE and XYZE (converted), all run lengths; rows, not
  *         columns. EXPOSURE is divided out, a PFM scale is multiplied in.
  *   QOI   RGB and RGBA bytes.
- * An image is refused where it would need more than 256 MiB + 2000 times the size of its file: a hostile header costs
- * no memory, and of honest files only huge ones of a single colour get there. */
+ * Headers may lie, so memory follows the bytes of the file: up to 64 MiB + 16 times its size are taken at once. An image that
+ * needs more, as honest ones of few colours do, is unpacked twice: first a row at a time, to see that all its pixels are there,
+ * and then for good. Beyond sr_image_limit_B it is refused. */
 sr_status sr_image_read(const char *path, struct sr_image **image, struct sr_error *error);
 /* The same, where the caller knows what whole numbers in the file mean (normal maps and roughness are linear). */
+size_t sr_image_limit_B(size_t file_B); // [B] that the pixels of a file of that size may take: 256 MiB + 2000 file_B
 sr_status sr_image_read_as(const char *path, enum sr_image_encoding encoding, struct sr_image **image,
                            struct sr_error *error);
 /* From memory; label stands for the path in messages and its ending. */

@@ -65,18 +65,15 @@ static sr_status decode(const struct sr_image_source *source, struct sr_image **
         return sr_fail(error, SR_ERROR_INPUT,
                        "%s: the PFM header is damaged: width, height and a scale that is not 0 were expected",
                        source->label);
+    if (height > (source->size - at) / 4 / channels / width)
+        return sr_fail(error, SR_ERROR_INPUT, "%s: is cut short: %zu bytes of pixels, %llu x %llu pixels of %u bytes were expected",
+                       source->label, source->size - at, (unsigned long long)width, (unsigned long long)height, 4 * channels);
     sr_status status = sr_image_create_for(source, width, height, channels, NULL, SR_IMAGE_FLOATS, image, error);
     if (status != SR_OK)
         return status;
     size_t row = (size_t)width * channels, needed = row * height * 4;
     if (source->size - at == needed + 1 && source->data[at - 1] == '\r' && source->data[at] == '\n')
         at++;
-    if (source->size - at < needed) {
-        sr_image_free(*image);
-        *image = NULL;
-        return sr_fail(error, SR_ERROR_INPUT, "%s: is cut short: %zu bytes of pixels, %zu were expected", source->label,
-                       source->size - at, needed);
-    }
     float factor = (float)fabs(scale);
     for (size_t y = 0; y < height; y++) {
         const uint8_t *from = source->data + at + (height - 1 - y) * row * 4;

@@ -19,7 +19,6 @@ struct job {
     const struct sr_image_source *source;
     size_t at; // [B] read so far
     struct sr_image *image;
-    uint8_t *wide; // rows of 16-bit files
     struct sr_array *out;
     struct sr_error *error;
     sr_status status;
@@ -44,8 +43,11 @@ static void on_warning(png_structp png, png_const_charp text)
 
 static png_voidp allocate(png_structp png, png_alloc_size_t size)
 {
-    (void)png;
-    return sr_alloc(size);
+    void *p = sr_alloc(size);
+    struct job *job = png_get_error_ptr(png);
+    if (!p && job && job->status == SR_OK) // the library may not say it so
+        job->status = sr_fail(job->error, SR_ERROR_RESOURCE, "%s: not enough memory", job->source ? job->source->label : "PNG");
+    return p;
 }
 
 static void release(png_structp png, png_voidp p)
@@ -79,20 +81,22 @@ static void flush(png_structp png)
     (void)png;
 }
 
+/* Two bytes a number, kept in the second half of the row that they become. */
 static void read_wide(png_structp png, struct job *job, uint32_t channels, int passes)
 {
     struct sr_image *image = job->image;
-    size_t row = (size_t)image->width * channels * 2;
-    job->wide = row <= SIZE_MAX / 4 / image->height ? sr_alloc(row * image->height) : NULL;
-    if (!job->wide)
-        png_error(png, "not enough memory");
+    size_t n = (size_t)image->width * channels;
     for (; passes > 0; passes--)
         for (uint32_t y = 0; y < image->height; y++)
-            png_read_row(png, job->wide + row * y, NULL);
-    for (size_t i = 0; i < (size_t)image->width * image->height * channels; i++) {
-        float v = (float)((unsigned)job->wide[2 * i] << 8 | job->wide[2 * i + 1]) / 65535;
-        bool is_alpha = (channels & 1) == 0 && i % channels == channels - 1;
-        image->floats[i] = job->source->encoding == SR_IMAGE_SRGB && !is_alpha ? sr_image_decode_srgb(v) : v;
+            png_read_row(png, (png_bytep)sr_image_row(job->source, image, y) + 2 * n, NULL);
+    for (uint32_t y = 0; y < image->height; y++) {
+        float *row = sr_image_row(job->source, image, y);
+        const uint8_t *wide = (const uint8_t *)row + 2 * n; // the float overwrites only what has been read
+        for (size_t i = 0; i < n; i++) {
+            float v = (float)((unsigned)wide[2 * i] << 8 | wide[2 * i + 1]) / 65535;
+            bool is_alpha = (channels & 1) == 0 && i % channels == channels - 1;
+            row[i] = job->source->encoding == SR_IMAGE_SRGB && !is_alpha ? sr_image_decode_srgb(v) : v;
+        }
     }
 }
 
@@ -123,7 +127,7 @@ static void read_all(png_structp png, png_infop info, struct job *job)
     }
     for (; depth < 16 && passes > 0; passes--)
         for (uint32_t y = 0; y < height; y++)
-            png_read_row(png, job->image->bytes + (size_t)y * width * channels, NULL);
+            png_read_row(png, sr_image_row(job->source, job->image, y), NULL);
     png_read_end(png, NULL);
 }
 
@@ -147,7 +151,6 @@ static sr_status decode(const struct sr_image_source *source, struct sr_image **
             sr_image_free(job->image);
             *image = NULL;
         }
-        sr_free(job->wide);
     }
     png_destroy_read_struct(png ? &png : NULL, info ? &info : NULL, NULL);
     sr_free(job);

@@ -46,11 +46,13 @@ static sr_status decode(const struct sr_image_source *source, struct sr_image **
         return status;
     (*image)->encoding = source->encoding;
     struct pixel seen[64] = {0}, p = {0, 0, 0, 255};
-    uint8_t *out = (*image)->bytes;
+    uint8_t *out = NULL;
     size_t pixels = (size_t)width * height;
     int run = 0;
     at += 14;
     for (size_t i = 0; i < pixels; ++i, out += channels) {
+        if (i % width == 0)
+            out = sr_image_row(source, *image, (uint32_t)(i / width));
         if (run > 0) {
             --run;
         } else {

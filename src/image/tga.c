@@ -90,10 +90,10 @@ static const char *unpack(const struct sr_image_source *source, size_t at, const
         }
         if (source->size - at < bytes)
             return "is cut short";
-        size_t x = i % h->width, y = i / h->width;
+        uint32_t x = (uint32_t)(i % h->width), y = (uint32_t)(i / h->width);
         x = h->is_right_to_left ? h->width - 1 - x : x;
         y = h->is_bottom_up ? h->height - 1 - y : y;
-        if (!put_pixel(h, palette, source->data + at, image->bytes + (y * h->width + x) * h->channels))
+        if (!put_pixel(h, palette, source->data + at, (uint8_t *)sr_image_row(source, image, y) + (size_t)x * h->channels))
             return "names a colour that is not in its palette";
         run -= h->is_packed;
         // a repeated pixel is passed when its run ends
@@ -118,12 +118,14 @@ static sr_status decode(const struct sr_image_source *source, struct sr_image **
     if (at > source->size)
         return sr_fail(error, SR_ERROR_INPUT, "%s: is cut short: a palette of %u colours was expected", source->label,
                        h.palette_count);
-    sr_status status = sr_image_create_for(source, h.width, h.height, h.channels, NULL, SR_IMAGE_BYTES, image, error);
-    if (status != SR_OK)
-        return status;
-    const char *wrong = unpack(source, at, &h, palette, *image);
+    sr_status status = SR_OK;
+    const char *wrong = "is cut short";
+    if (h.is_packed || (size_t)h.width * h.height * ((h.depth + 7) / 8) <= source->size - at) {
+        status = sr_image_create_for(source, h.width, h.height, h.channels, NULL, SR_IMAGE_BYTES, image, error);
+        wrong = status == SR_OK ? unpack(source, at, &h, palette, *image) : NULL;
+    }
     if (!wrong)
-        return SR_OK;
+        return status;
     sr_image_free(*image);
     *image = NULL;
     return sr_fail(error, SR_ERROR_INPUT, "%s: %s: the pixels of a TGA image of %u x %u were expected", source->label,

@@ -9,10 +9,9 @@
 
 static bool count_memory(void *user, ssize_t bytes, bool post)
 {
-    (void)post;
     struct sr_scene *scene = user;
     __atomic_fetch_add(&scene->counts.acceleration_B, (uint64_t)bytes, __ATOMIC_RELAXED);
-    return true;
+    return bytes < 0 || post || sr_alloc_allowed();
 }
 
 /* ---- callbacks of the ray caster ---- */

@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: MIT */
+/* Scenes as text, and the small files that they name: whatever the bytes, they are read, built and rendered, or refused with a
+ * reason.
+ *
+ * FUZZ_SEED: 0 pbrt text, as a description; 1 a whole scene, built, with one sample rendered of each pixel; 2 the tables that a scene
+ * names: by its first byte a spectrum, a lens, a material library of OBJ, or anything packed by gzip; 3 a PLY mesh. The
+ * scene includes itself, which must be found out. Runs as fuzz_measured.c does. */
+#define _GNU_SOURCE
+#include "fuzz/seeds.h"
+#include "import/describe.h"
+#include "import/obj.h"
+#include "import/ply.h"
+#include "integrator/integrator.h"
+#include "render/render.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/mman.h>
+#include <unistd.h>
+#include <zlib.h>
+
+static const char scene_head[] =
+    "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" [40] \"float lensradius\" .01 \"float focaldistance\" 5\n"
+    "Film \"rgb\" \"integer xresolution\" 3 \"integer yresolution\" [2] \"string filename\" \"a.exr\"\nSampler \"zsobol\" \"integer pixelsamples\" 1\n"
+    "PixelFilter \"gaussian\" \"float xradius\" 2\nIntegrator \"volpath\" \"integer maxdepth\" 3\nOption \"integer seed\" 7\n"
+    "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [.1 .2 .3] \"float g\" .3\n"
+    "TransformTimes 0 1 ColorSpace \"srgb\" CoordSysTransform \"camera\" Identity\n#@ Uncertainty \"x\" \"string material\" \"b\" \"string parameter\" \"vroughness\" \"float u\" .01\nWorldBegin\n";
+static const char scene_body[] =
+    "AttributeBegin\n#@ Name \"lamp\"\nTranslate 0 2 0 Rotate 90 1 0 0 Scale 1 1 -1 ReverseOrientation\n"
+    "AreaLightSource \"diffuse\" \"blackbody L\" 4000 \"float scale\" 2\nShape \"disk\" \"float radius\" .5\nAttributeEnd\n"
+    "LightSource \"infinite\" \"rgb L\" [.1 .2 .3]\nLightSource \"spot\" \"point3 from\" [0 3 0] \"spectrum I\" [400 1 700 2]\n"
+    "Texture \"t\" \"spectrum\" \"checkerboard\" \"rgb tex1\" [.1 .2 .3] \"float uscale\" 3\nTexture \"f\" \"float\" \"fbm\" \"integer octaves\" 3\n"
+    "Texture \"m\" \"spectrum\" \"mix\" \"texture tex1\" \"t\" \"texture amount\" \"f\"\n"
+    "MakeNamedMaterial \"a\" \"string type\" \"coateddiffuse\" \"texture reflectance\" \"m\" \"float roughness\" .1\n"
+    "MakeNamedMaterial \"b\" \"string type\" \"conductor\" \"spectrum eta\" \"metal-Cu-eta\" \"float vroughness\" .2\n"
+    "Material \"mix\" \"string materials\" [\"a\" \"b\"] \"float amount\" .5\n"
+    "Shape \"trianglemesh\" \"point3 P\" [-1 -1 0 1 -1 0 1 1 0 -1 1 .1] \"integer indices\" [0 1 2 0 2 3] \"point2 uv\" [0 0 1 0 1 1 0 1]\n"
+    "NamedMaterial \"b\" Shape \"sphere\" \"float radius\" .4 \"float zmax\" .3\nMaterial \"dielectric\" Attribute \"shape\" \"float alpha\" .5\n"
+    "MediumInterface \"fog\" \"\" Shape \"sphere\" \"float radius\" 3\nShape \"curve\" \"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 1] \"float width\" .1\n"
+    "Shape \"loopsubdiv\" \"integer levels\" 1 \"point3 P\" [0 0 0 1 0 0 0 1 0 0 0 1] \"integer indices\" [0 2 1 0 1 3 1 2 3 0 3 2]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 1]\n"
+    "ObjectBegin \"o\" Shape \"cylinder\" \"float radius\" .1 ObjectEnd\nConcatTransform [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1] ObjectInstance \"o\"\n"
+    "#@ Meter \"irradiance\" \"string name\" \"m\" \"point3 p\" [0 0 1] \"normal n\" [0 0 1]\n";
+
+static const char spectrum[] = "# nm value\n360 0.1\n500, 0.4\n\t780 1e-1\n830 2.5E0\n";
+static const char lens[] = "# radius thickness eta diameter\n35.98 1.21 1.54 23.7\n11.69 9.99 1 20.1\n13.08 5.12 1.77 17.9\n-22.58 1.81 1.64 16.6\n0 1.6 0 15\n"
+                           "20.38 1.76 1.6 13\n-24.2 46 0 12.3\n";
+static const char materials[] = "newmtl m\nKd 0.5 .2 1\nKs 1 1 1\nNs 30\nillum 2\nd .5\nNi 1.5\nTf 1 0 1\nmap_Kd -s 1 1 1 none.png\nPm 0.1\nPr .2\nKe 1 1 1\nbump -bm 2 x.png\n";
+#define FUZZ_VARIANTS (FUZZ_SEED == 2 ? 4 : 1)
+static int variant; // of the tables
+
+static void pack(struct seed *s)
+{
+    z_stream z = {.next_in = (Bytef *)(uintptr_t)scene_body, .avail_in = sizeof scene_body, .next_out = s->data + s->size, .avail_out = (uInt)(SEED_SIZE - s->size)};
+    if (deflateInit2(&z, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) != Z_OK || deflate(&z, Z_FINISH) != Z_STREAM_END)
+        exit(4);
+    s->size += z.total_out;
+    deflateEnd(&z);
+}
+
+static void make_seed(int number, struct seed *s)
+{
+    static const char ply[] = "ply\nformat ascii 1.0\ncomment x\nelement vertex 4\nproperty float x\nproperty float y\nproperty double z\nproperty float u\n"
+                              "property float v\nelement face 2\nproperty list uchar int vertex_indices\nproperty int face_indices\nend_header\n";
+    static const char body[] = "0 0 0 0 0\n1 0 0 1 0\n1 1 .5 1 1\n0 1 0 0 1\n3 0 1 2 7\n4 0 1 2 3 8\n";
+    s->size = s->header = 0;
+    if (number < 2) {
+        seed_put(s, scene_head, strlen(scene_head));
+        s->header = s->size;
+        seed_put(s, scene_body, strlen(scene_body));
+        if (number == 0)
+            seed_print(s, "Include \"/proc/self/fd/100\"\n");
+    } else if (number == 2) {
+        static const char *const tables[] = {spectrum, lens, materials};
+        uint8_t which = (uint8_t)variant;
+        seed_put(s, &which, 1);
+        if (variant < 3)
+            seed_put(s, tables[variant], strlen(tables[variant]));
+        else
+            pack(s);
+    } else {
+        seed_put(s, ply, strlen(ply));
+        s->header = s->size;
+        seed_put(s, body, strlen(body));
+    }
+}
+
+static const char *seed_name(int number)
+{
+    return ((const char *const[]){"pbrt", "scene", "tables", "ply"})[number];
+}
+
+/* ---- files: in memory, under names that scenes can tell ---- */
+
+enum { OUTER = 100, INNER = 101 };
+#define OUTER_NAME "/proc/self/fd/100"
+#define INNER_NAME "/proc/self/fd/101"
+
+static void open_file(int number, const void *data, size_t size)
+{
+    int file = memfd_create("fuzzed", 0);
+    if (file < 0 || write(file, data, size) != (ssize_t)size || dup2(file, number) < 0)
+        exit(4);
+    close(OUTER);
+}
+
+static void judge_status(sr_status status, const struct sr_error *error)
+{
+    if ((status == SR_OK) != (error->status == SR_OK) || (status != SR_OK && !error->text[0]))
+        abort(); // a refusal has a reason
+    if (status == SR_ERROR_RESOURCE)
+        abort(); // nothing here is large
+}
+
+static void judge_text(const uint8_t *data, size_t size)
+{
+    open_file(OUTER, data, size);
+    struct sr_arena arena = {0};
+    struct sr_error error = {0};
+    struct sr_pbrt_description d;
+    judge_status(sr_pbrt_read(OUTER_NAME, &arena, NULL, &d, &error), &error);
+    if (arena.total + d.words.total > 16 * d.text_B + 64 * size + (1u << 20))
+        abort(); // memory by what the file says, not by what it is
+    sr_pbrt_description_free(&d);
+    sr_arena_free(&arena);
+    close(OUTER);
+}
+
+static void judge_scene(const void *data, size_t size)
+{
+    open_file(OUTER, data, size);
+    struct sr_import_options options = {.threads = 1, .width = 3, .height = 2, .spp = 1};
+    struct sr_import_result r;
+    struct sr_error error = {0};
+    sr_status status = sr_import_pbrt(OUTER_NAME, &options, &r, NULL, &error);
+    judge_status(status, &error);
+    if (status == SR_OK) {
+        struct sr_render_job job = {.scene = r.scene, .sensor = r.sensor, .filter = r.filter, .integrator = r.integrator, .film = r.film, .sampler = r.sampler,
+                                    .seed = r.seed, .spp = 1, .lambda = {360, 830}, .jitter_pixel = true, .jitter_lambda = true, .threads = 1};
+        struct sr_film *film = NULL;
+        struct sr_render_report report;
+        if ((uint64_t)r.film.width * r.film.height <= 64 && r.scene)
+            judge_status(sr_render(&job, &film, &report, &error), &error);
+        sr_film_destroy(film);
+        sr_import_result_free(&r);
+    }
+    close(OUTER);
+}
+
+static void judge_named(const char *text, const uint8_t *data, size_t size)
+{
+    open_file(INNER, data, size);
+    judge_scene(text, strlen(text));
+    close(INNER);
+}
+
+static void judge_library(const uint8_t *data, size_t size)
+{
+    static const struct sr_import_options nothing;
+    static const char text[] = "mtllib " INNER_NAME "\nv 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl m\nf 1 2 3\n";
+    open_file(INNER, data, size);
+    struct sr_arena arena = {0};
+    struct sr_error error = {0};
+    struct sr_pbrt_description d = {0};
+    judge_status(sr_obj_read_text("file", text, sizeof text - 1, &nothing, &arena, NULL, &d, &error), &error);
+    sr_pbrt_description_free(&d);
+    sr_arena_free(&arena);
+    close(INNER);
+}
+
+static void judge_packed(const uint8_t *data, size_t size)
+{
+    char *bytes;
+    open_file(OUTER, data, size);
+    size_t unpacked;
+    struct sr_error error = {0};
+    sr_status status = sr_file_read(OUTER_NAME, 64 << 20, &bytes, &unpacked, &error);
+    judge_status(status, &error);
+    if (status == SR_OK && (bytes[unpacked] != 0 || unpacked > 1100 * size))
+        abort();
+    sr_free(bytes);
+    close(OUTER);
+}
+
+static void judge_table(const uint8_t *data, size_t size)
+{
+    if (size == 0)
+        return;
+    switch (data[0] % 4) {
+    case 0:
+        judge_named("WorldBegin LightSource \"infinite\" \"spectrum L\" \"" INNER_NAME "\"\n", data + 1, size - 1);
+        break;
+    case 1:
+        judge_named("Camera \"realistic\" \"string lensfile\" \"" INNER_NAME "\" \"float aperturediameter\" 3\nWorldBegin\n", data + 1, size - 1);
+        break;
+    case 2:
+        judge_library(data + 1, size - 1);
+        break;
+    default:
+        judge_packed(data + 1, size - 1);
+    }
+}
+
+static void judge_ply(const uint8_t *data, size_t size)
+{
+    struct sr_ply_mesh mesh = {0};
+    struct sr_error error = {0};
+    char *text = malloc(size + 1); // ended by NUL, as files are read
+    if (!text)
+        exit(4);
+    memcpy(text, data, size);
+    text[size] = 0;
+    sr_status status = sr_ply_decode("file.ply", text, size, &mesh, &error);
+    judge_status(status, &error);
+    if (mesh.memory.total > 16 * size + (1u << 20))
+        abort();
+    for (uint32_t i = 0; status == SR_OK && i < 3 * mesh.triangle_count; ++i)
+        if (mesh.triangles[i] < 0 || (uint32_t)mesh.triangles[i] >= mesh.vertex_count)
+            abort();
+    for (uint32_t i = 0; status == SR_OK && i < 4 * mesh.quad_count; ++i)
+        if (mesh.quads[i] < 0 || (uint32_t)mesh.quads[i] >= mesh.vertex_count)
+            abort();
+    sr_ply_free(&mesh);
+    free(text);
+}
+
+/* All words that a scene may have, as its text has them. */
+static void write_word(void *context, const struct sr_import_plugin *plugin)
+{
+    static const char *const types[] = {"bool", "integer", "float", "string", "string", "string", "point2", "point3", "vector3", "normal", "rgb", "spectrum", "blackbody", "texture",
+                                        "texture", "texture", "string", "integer", "float", "point2", "point3", "vector3", "normal", "rgb"};
+    bool is_bare = strcmp(plugin->kind, "directive") == 0;
+    if (plugin->name[0])
+        fprintf(context, is_bare ? "\"%s \"\n" : "\"\\\"%s\\\" \"\n", plugin->name);
+    for (const struct sr_param *p = plugin->params; p && p->name; ++p)
+        fprintf(context, "\"\\\"%s %s\\\" \"\n", types[p->kind], p->name);
+}
+
+static void write_words(FILE *file)
+{
+    if (FUZZ_SEED < 2)
+        sr_import_plugins(write_word, file);
+}
+#define FUZZ_DICTIONARY write_words
+
+static void judge(const uint8_t *data, size_t size)
+{
+    switch (FUZZ_SEED) {
+    case 0:
+        judge_text(data, size);
+        break;
+    case 1:
+        judge_scene(data, size);
+        break;
+    case 2:
+        judge_table(data, size);
+        break;
+    default:
+        judge_ply(data, size);
+    }
+}
+
+#include "fuzz/driver.h"
