@@ -15,6 +15,12 @@ sr_status sr_part_no_memory(struct sr_error *error)
     return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for a part of the picture");
 }
 
+/* Number of a block's first sample. */
+static uint64_t begin_of(uint32_t spp, uint32_t blocks, uint32_t block)
+{
+    return (uint64_t)spp * block / blocks;
+}
+
 size_t sr_part_pixels(const struct sr_render_part *part)
 {
     return (size_t)part->film->width * part->film->height;
@@ -22,7 +28,7 @@ size_t sr_part_pixels(const struct sr_render_part *part)
 
 static uint64_t block_begin(const struct sr_render_part *part, uint32_t block)
 {
-    return (uint64_t)part->spp * block / part->blocks;
+    return begin_of(part->spp, part->blocks, block);
 }
 
 uint32_t sr_part_block_size(const struct sr_render_part *part, uint32_t block)
@@ -45,6 +51,7 @@ void sr_part_node_free(struct part_node *node)
     sr_free(node->colours);
     sr_free(node->firsts);
     sr_free(node->buckets);
+    node->colours = NULL, node->firsts = NULL, node->buckets = NULL;
 }
 
 static bool is_power_of_two(uint32_t n)
@@ -123,22 +130,50 @@ static struct sr_film_block kept(const struct part_node *node, size_t pixel)
 
 /* ---- what a render fills ---- */
 
-/* The nodes of samples begin <= i < end of a block of n. */
-static bool add_nodes(struct sr_array *nodes, uint32_t block, uint32_t begin, uint32_t end, uint32_t n)
+/* Calls visit for each node of the samples in range, by block and begin. */
+static void visit_nodes(uint32_t spp, uint32_t blocks, struct sr_render_range range, void (*visit)(void *context, struct part_node node), void *context)
 {
-    for (uint32_t at = begin; at < end;) {
-        uint32_t size = 1;
-        while (at % (2 * size) == 0 && end - at >= 2 * size && size < 1u << 30)
-            size *= 2;
-        if (begin == 0 && end == n)
-            size = n;
-        struct part_node *node = sr_array_push(nodes, sizeof *node);
-        if (!node)
-            return false;
-        *node = (struct part_node){.block = block, .begin = at, .count = size};
-        at += size;
+    for (uint32_t b = 0; b < blocks; ++b) {
+        uint64_t first = begin_of(spp, blocks, b), end = begin_of(spp, blocks, b + 1);
+        uint32_t n = (uint32_t)(end - first), at = range.begin > first ? (uint32_t)(range.begin - first) : 0;
+        uint32_t to = range.end < end ? range.end > first ? (uint32_t)(range.end - first) : 0 : n;
+        while (at < to) {
+            uint32_t size = 1;
+            while (at % (2 * size) == 0 && to - at >= 2 * size)
+                size *= 2;
+            if (at == 0 && to == n)
+                size = n;
+            visit(context, (struct part_node){.block = b, .begin = at, .count = size});
+            at += size;
+        }
     }
-    return true;
+}
+
+static void count_node(void *context, struct part_node node)
+{
+    (void)node;
+    *(uint64_t *)context += 1;
+}
+
+uint64_t sr_part_nodes(uint32_t spp, uint32_t blocks, struct sr_render_range range)
+{
+    uint64_t count = 0;
+    visit_nodes(spp, blocks, range, count_node, &count);
+    return count;
+}
+
+size_t sr_part_node_B(const struct sr_render_job *job)
+{
+    return sizeof(struct part_colour) + (job->with_aov || job->film.is_gbuffer ? sizeof(struct part_first) : 0) + job->film.buckets * sizeof(double);
+}
+
+static void make_node(void *context, struct part_node node)
+{
+    struct sr_render_part *part = context;
+    struct part_node *n = &part->nodes[part->node_count++];
+    *n = node;
+    if (!sr_part_node_alloc(part, n))
+        sr_part_node_free(n);
 }
 
 sr_status sr_part_create(const struct sr_render_job *job, uint32_t blocks, struct sr_render_range range, struct sr_render_part **out, struct sr_error *error)
@@ -148,24 +183,20 @@ sr_status sr_part_create(const struct sr_render_job *job, uint32_t blocks, struc
     if (!part)
         return sr_part_no_memory(error);
     *part = (struct sr_render_part){.spp = job->spp, .replicates = job->replicates, .blocks = blocks};
-    struct sr_array nodes = {0};
-    bool is_done = sr_film_create(&job->film, job->with_aov, &part->film, error) == SR_OK;
-    for (uint32_t b = 0; b < blocks && is_done; ++b) {
-        uint64_t begin = block_begin(part, b), end = block_begin(part, b + 1);
-        uint64_t from = range.begin > begin ? range.begin : begin, to = range.end < end ? range.end : end;
-        if (from < to)
-            is_done = add_nodes(&nodes, b, (uint32_t)(from - begin), (uint32_t)(to - begin), (uint32_t)(end - begin));
+    if (sr_film_create(&job->film, job->with_aov, &part->film, error) == SR_OK) {
+        part->nodes = sr_alloc(sr_part_nodes(job->spp, blocks, range) * sizeof *part->nodes);
+        if (part->nodes)
+            visit_nodes(job->spp, blocks, range, make_node, part);
+        bool is_done = part->nodes != NULL;
+        for (size_t i = 0; i < part->node_count; ++i)
+            is_done &= part->nodes[i].colours != NULL;
+        if (!is_done)
+            sr_part_no_memory(error);
     }
-    part->nodes = nodes.data;
-    part->node_count = nodes.count;
-    for (size_t i = 0; i < part->node_count && is_done; ++i)
-        is_done = sr_part_node_alloc(part, &part->nodes[i]);
-    if (is_done) {
+    if (error->status == SR_OK)
         *out = part;
-        return SR_OK;
-    }
-    sr_render_part_destroy(part);
-    sr_part_no_memory(error);
+    else
+        sr_render_part_destroy(part);
     return error->status;
 }
 

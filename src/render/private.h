@@ -83,6 +83,9 @@ bool sr_render_is_earlier(const uint32_t a[4], const uint32_t b[4]);
 /* ---- part.c ---- */
 
 sr_status sr_part_create(const struct sr_render_job *job, uint32_t blocks, struct sr_render_range range, struct sr_render_part **out, struct sr_error *error);
+/* How many sums it has for each pixel, and [B] of each of them. */
+uint64_t sr_part_nodes(uint32_t spp, uint32_t blocks, struct sr_render_range range);
+size_t sr_part_node_B(const struct sr_render_job *job);
 struct sr_film *sr_part_splats_film(struct sr_render_part *part); // what the pass's film is
 struct sr_render_report *sr_part_report(struct sr_render_part *part);
 /* Keeps a pixel's sums of the samples of a block that the part has. Threads may call it for different pixels or blocks. */

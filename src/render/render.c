@@ -340,6 +340,11 @@ sr_status sr_render(const struct sr_render_job *wanted, struct sr_film **film, s
     return status;
 }
 
+double sr_render_samples_B(const struct sr_render_job *job, struct sr_render_range range)
+{
+    return (double)sr_part_nodes(job->spp, pass_of(job).blocks, range) * (double)sr_part_node_B(job);
+}
+
 sr_status sr_render_samples(const struct sr_render_job *wanted, struct sr_render_range range, struct sr_render_part **part, struct sr_error *error)
 {
     struct sr_render_job own = *wanted, *job = &own;

@@ -99,6 +99,8 @@ struct sr_render_range {
 /* Renders these samples of each pixel. Fails for adaptive jobs, whose samples depend on each other's values. Cancelled:
  * SR_CANCELLED, and there is no part. */
 sr_status sr_render_samples(const struct sr_render_job *job, struct sr_render_range range, struct sr_render_part **part, struct sr_error *error);
+/* [B] for each pixel of the sums of such a part. */
+double sr_render_samples_B(const struct sr_render_job *job, struct sr_render_range range);
 void sr_render_part_destroy(struct sr_render_part *part); // NULL is allowed
 /* The number-th of the ranges that a part has, in ascending order; false where there are no more. */
 bool sr_render_part_range(const struct sr_render_part *part, size_t number, struct sr_render_range *range);

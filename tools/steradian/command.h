@@ -18,7 +18,7 @@ struct command {
     int (*run)(int argc, char **argv);
 };
 extern const struct command command_render, command_measure, command_info, command_compare, command_image, command_brdf, command_glare, command_validate,
-    command_converge, command_formats, command_convert;
+    command_converge, command_formats, command_convert, command_merge;
 
 /* ---- messages ---- */
 

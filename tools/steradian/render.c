@@ -32,6 +32,9 @@ static const char help[] =
     "      --sampler KIND     sobol (default) or independent\n"
     "      --exposure EV      exposure of a PNG in stops (default: chosen from the picture)\n"
     "      --aov, --no-aov    auxiliary channels in the EXR (default: with them)\n"
+    "      --sample-range A-B  samples A <= i < B of each pixel's 0 to spp, into a part: -o FILE.srp; 'steradian merge'\n"
+    "                         makes the picture of all parts (an image beside it shows this part alone)\n"
+    "      --part K/N         the same, with the K-th (1 to N) of N even ranges: for job arrays\n"
     "      --write-partial S  write the output every S seconds while rendering\n"
     "      --tile N           side of a work tile [pixel] (default: 16 or less; the bytes do not depend on it)\n"
     "      --disable-pixel-jitter, --disable-wavelength-jitter\n"
@@ -122,10 +125,10 @@ static struct sr_render_job make_job(const struct render_arguments *a, const str
     };
 }
 
-/* How to see the first sample that was not finite again. */
-static void print_replay(const struct render_arguments *a, const struct sr_render_job *job,
-                         const struct sr_render_report *report)
+void render_print_replay(const struct rendering *r, const struct sr_render_report *report)
 {
+    const struct render_arguments *a = r->arguments;
+    const struct sr_render_job *job = r->job;
     fprintf(stderr,
             "warning: %s: %llu samples were not finite and count as zero; to see the first again, add to the same "
             "command: --pixel %u,%u --sample %u",
@@ -143,7 +146,7 @@ static int finish(struct rendering *r, const struct sr_film *film, const struct 
     if (render_write_outputs(r, film, report->render_s, report->is_complete, &error) != SR_OK)
         return command_fail("render", &error);
     if (report->dropped)
-        print_replay(a, r->job, report);
+        render_print_replay(r, report);
     if (!a->quiet)
         render_print_summary(r, film, report);
     json_t *meters = report->is_complete ? render_measure(a, r->job) : json_array();
@@ -158,14 +161,15 @@ static int finish(struct rendering *r, const struct sr_film *film, const struct 
     return render_interrupt_exit();
 }
 
-static int render_scene(const struct render_arguments *a, const struct sr_import_result *scene)
+static int render_scene(const struct render_arguments *a, const struct sr_import_result *scene, struct sr_arena *arena)
 {
     bool wants_exr = false;
     for (int i = 0; i < render_output_count(a); ++i)
-        wants_exr |= sr_path_has_ending(render_output_name(a, scene, i), ".exr");
+        wants_exr |= a->has_range || sr_path_has_ending(render_output_name(a, scene, i), ".exr");
     struct rendering r = {.arguments = a, .scene = scene, .on_terminal = !a->quiet && isatty(STDERR_FILENO)};
     struct sr_render_job job = make_job(a, scene, a->aov && wants_exr, &r);
     r.job = &job;
+    r.about = picture_about(arena, &job, scene->hash, scene->units);
     const char *blind = sr_integrator_blind(&job.integrator, job.scene);
     if (blind)
         fprintf(stderr, "warning: %s: estimator %s: %s\n", a->scene, sr_integrator_label(&job.integrator), blind);
@@ -173,10 +177,17 @@ static int render_scene(const struct render_arguments *a, const struct sr_import
         return print_sample(a, &job);
 
     struct sr_error error = {0};
+    const char *of_scene = sr_import_identity(arena, &a->import, scene), *identity = sr_render_identity(arena, &job, of_scene);
+    if (!r.about || !of_scene || !identity)
+        sr_fail(&error, SR_ERROR_RESOURCE, "not enough memory for what the picture is of");
+    if (error.status)
+        return command_fail("render", &error);
     int code = render_check_outputs(a, scene);
     if (code)
         return code;
-    if (render_check_memory(&job, &error) != SR_OK)
+    if (a->has_range)
+        return render_part(&r, identity);
+    if (render_check_memory(&job, NULL, &error) != SR_OK)
         return command_fail("render", &error);
     render_catch_interrupts();
     struct sr_film *film;
@@ -214,7 +225,9 @@ static int run(int argc, char **argv)
         sr_import_pbrt(a.scene, &a.import, &scene, &log, &error);
     if (error.status)
         return command_fail("render", &error);
-    code = render_scene(&a, &scene);
+    struct sr_arena arena = {0};
+    code = render_scene(&a, &scene, &arena);
+    sr_arena_free(&arena);
     sr_import_result_free(&scene);
     return code;
 }

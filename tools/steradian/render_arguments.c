@@ -36,6 +36,8 @@ enum {
     OPT_TIME,
     OPT_CAMERA,
     OPT_VARIANT,
+    OPT_RANGE,
+    OPT_PART,
 };
 
 static const struct option long_options[] = {
@@ -70,6 +72,8 @@ static const struct option long_options[] = {
     {"adaptive", no_argument, NULL, OPT_ADAPTIVE},
     {"error", required_argument, NULL, OPT_ERROR},
     {"time", required_argument, NULL, OPT_TIME},
+    {"sample-range", required_argument, NULL, OPT_RANGE},
+    {"part", required_argument, NULL, OPT_PART},
     {"json", no_argument, NULL, OPT_JSON},
     {"irradiance", required_argument, NULL, OPT_IRRADIANCE},
     {"stamp", no_argument, NULL, OPT_STAMP},
@@ -205,6 +209,14 @@ int render_parse(int argc, char **argv, struct render_arguments *a)
         case OPT_VARIANT:
             a->import.variant = optarg;
             break;
+        case OPT_RANGE:
+        case OPT_PART:
+            if (a->has_range)
+                return command_usage(&command_render, "--sample-range or --part was expected, once");
+            a->has_range = true;
+            if (option == OPT_RANGE ? !render_parse_range(optarg, &a->range) : !render_parse_part(optarg, a->part))
+                return SR_ERROR_USAGE;
+            break;
         case OPT_QUICK:
             a->import.quick = true;
             break;
@@ -236,5 +248,5 @@ int render_parse(int argc, char **argv, struct render_arguments *a)
     if (a->has_sample && !a->has_pixel)
         return command_usage(&command_render, "--sample needs --pixel: which pixel's sample?");
     a->scene = argv[optind];
-    return 0;
+    return a->has_range ? render_check_part(a) : 0;
 }

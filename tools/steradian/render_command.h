@@ -3,12 +3,10 @@
 #ifndef SR_TOOLS_RENDER_H
 #define SR_TOOLS_RENDER_H
 
-#include "command.h"
-
-#include "import/import.h"
-#include "render/render.h"
+#include "picture.h"
 
 enum { RENDER_MAX_OUTPUTS = 8, RENDER_MAX_METERS = 16 };
+#define PART_ENDING ".srp" // of files that hold a part of a picture
 
 struct render_arguments {
     const char *scene, *outputs[RENDER_MAX_OUTPUTS];
@@ -21,6 +19,9 @@ struct render_arguments {
     double pixel[2], exposure_EV, partial_s;
     double lambda[2]; // [nm]
     const char *sampler;
+    bool has_range;                // some of the samples only: a part of the picture
+    struct sr_render_range range;
+    uint64_t part[2];              // instead, number K of N even ranges; N = 0: not asked for
     double meters[RENDER_MAX_METERS][6]; // [m] point, [1] normal
     int meter_count;
 };
@@ -30,14 +31,31 @@ struct rendering {
     const struct render_arguments *arguments;
     const struct sr_import_result *scene;
     const struct sr_render_job *job;
+    const char *about;     // of picture_about
+    struct sr_render_range range; // of a part
     double last_partial_s; // [s]
     bool on_terminal;
 };
+
+/* ---- render.c ---- */
+
+/* How to see the first sample that was not finite again. */
+void render_print_replay(const struct rendering *r, const struct sr_render_report *report);
 
 /* ---- render_arguments.c ---- */
 
 /* Fills the arguments; 0, or the exit code of a mistake that has been told. */
 int render_parse(int argc, char **argv, struct render_arguments *a);
+
+/* ---- render_part.c ---- */
+
+/* "A-B", "K/N" */
+bool render_parse_range(const char *text, struct sr_render_range *range);
+bool render_parse_part(const char *text, uint64_t part[2]);
+/* What does not go with a part. 0, or the exit code of a mistake that has been told. */
+int render_check_part(const struct render_arguments *a);
+/* Renders some of the samples and writes them; the exit code. identity: of the picture. */
+int render_part(struct rendering *r, const char *identity);
 
 /* ---- render_output.c ---- */
 
@@ -47,8 +65,8 @@ const char *render_output_name(const struct render_arguments *a, const struct sr
 /* Endings that are known, folders that can be written: before any work. 0, or the exit code of a failure that has been
  * told. scene: NULL while it is not read yet. */
 int render_check_outputs(const struct render_arguments *a, const struct sr_import_result *scene);
-/* Whether the picture and what belongs to it fit into this machine's memory. */
-sr_status render_check_memory(const struct sr_render_job *job, struct sr_error *error);
+/* Whether the picture and what belongs to it fit into this machine's memory. range: NULL, or of the part. */
+sr_status render_check_memory(const struct sr_render_job *job, const struct sr_render_range *range, struct sr_error *error);
 sr_status render_write_outputs(const struct rendering *r, const struct sr_film *film, double elapsed_s,
                                bool is_complete, struct sr_error *error);
 
@@ -66,8 +84,6 @@ void render_on_progress(void *user, const struct sr_render_progress *p);
 json_t *render_measure(const struct render_arguments *a, const struct sr_render_job *job);
 /* Whether --error asked for less noise than the picture has. */
 bool render_missed_target(const struct rendering *r, const struct sr_film *film);
-/* Mean samples per pixel. */
-double render_mean_spp(const struct sr_film *film);
 void render_print_summary(const struct rendering *r, const struct sr_film *film, const struct sr_render_report *report);
 /* Takes meters over; the exit code. */
 int render_print_json(const struct rendering *r, const struct sr_film *film, const struct sr_render_report *report,

@@ -7,7 +7,6 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 /* ---- before any work ---- */
@@ -29,6 +28,10 @@ int render_check_outputs(const struct render_arguments *a, const struct sr_impor
         const char *name = render_output_name(a, scene, i);
         if (command_check_output(name, &error) != SR_OK)
             break;
+        if (a->has_range && sr_path_has_ending(name, PART_ENDING))
+            continue;
+        if (!a->has_range && sr_path_has_ending(name, PART_ENDING))
+            return command_usage(&command_render, "%s: a part of a picture needs --sample-range or --part", name);
         if (!command_is_image_ending(name) && a->output_count)
             return command_usage(&command_render, "%s: the ending .exr, .png, .pfm or .hdr was expected", name);
         if (!command_is_image_ending(name))
@@ -50,10 +53,10 @@ static double pixel_B(const struct sr_render_job *job)
            2 * channels * sizeof(float);
 }
 
-sr_status render_check_memory(const struct sr_render_job *job, struct sr_error *error)
+sr_status render_check_memory(const struct sr_render_job *job, const struct sr_render_range *range, struct sr_error *error)
 {
     double width = (double)job->film.x1 - job->film.x0, height = (double)job->film.y1 - job->film.y0;
-    double needed_B = width * height * pixel_B(job);
+    double needed_B = width * height * (pixel_B(job) + (range ? sr_render_samples_B(job, *range) : 0));
     double there_B = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
     if (there_B > 0 && needed_B > there_B)
         return sr_fail(error, SR_ERROR_RESOURCE,
@@ -64,70 +67,16 @@ sr_status render_check_memory(const struct sr_render_job *job, struct sr_error *
 
 /* ---- writing ---- */
 
-/* "fisheye; mapping equisolid; fov 180": words and numbers of the camera, so that others know where each pixel looks. */
-static void describe_camera(struct sr_image *image, const struct sr_sensor *sensor, struct sr_error *error)
-{
-    char text[400];
-    int n = snprintf(text, sizeof text, "%s", sensor->model->name);
-    for (const struct sr_param *p = sensor->model->params; p->name && n < (int)sizeof text; ++p) {
-        const char *value = (const char *)sensor->self + p->offset;
-        if (p->kind == SR_PARAM_FLOAT && isfinite(*(const float *)(const void *)value))
-            n += snprintf(text + n, sizeof text - (size_t)n, "; %s %g", p->name, (double)*(const float *)(const void *)value);
-        if (p->kind != SR_PARAM_ENUM)
-            continue;
-        const char *choice = p->text;
-        for (int32_t skip = *(const int32_t *)(const void *)value; skip > 0 && strchr(choice, '|'); --skip)
-            choice = strchr(choice, '|') + 1;
-        n += snprintf(text + n, sizeof text - (size_t)n, "; %s %.*s", p->name, (int)strcspn(choice, "|"), choice);
-    }
-    sr_image_set_attribute(image, "steradian.camera", text, error);
-}
-
-static void describe(struct sr_image *image, const struct rendering *r, const struct sr_film *film, double elapsed_s, bool is_complete,
-                     struct sr_error *error)
-{
-    char text[64];
-#define ATTRIBUTE(name, ...)                                                                                           \
-    do {                                                                                                               \
-        snprintf(text, sizeof text, __VA_ARGS__);                                                                      \
-        sr_image_set_attribute(image, name, text, error);                                                              \
-    } while (0)
-    ATTRIBUTE("steradian.version", "%s", SR_VERSION);
-    ATTRIBUTE("steradian.sceneHash", "%016llx", (unsigned long long)r->scene->hash);
-    ATTRIBUTE("steradian.seed", "%u", r->job->seed);
-    ATTRIBUTE("steradian.samplesPerPixel", "%.9g", render_mean_spp(film));
-    ATTRIBUTE("steradian.replicates", "%u", r->job->replicates);
-    ATTRIBUTE("steradian.integrator", "%s", sr_integrator_label(&r->job->integrator));
-    describe_camera(image, &r->job->sensor, error);
-    ATTRIBUTE("steradian.lambda", "%g..%g nm", (double)r->job->lambda.lo, (double)r->job->lambda.hi);
-    ATTRIBUTE("steradian.units", "%s", r->scene->units == SR_UNITS_SI ? "si" : "photometric");
-    if (!is_complete)
-        ATTRIBUTE("steradian.complete", "no");
-    if (r->arguments->stamp) {
-        time_t now = time(NULL);
-        struct tm utc;
-        gmtime_r(&now, &utc);
-        strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-        sr_image_set_attribute(image, "steradian.date", text, error);
-        ATTRIBUTE("steradian.renderTimeSeconds", "%.3f", elapsed_s);
-    }
-#undef ATTRIBUTE
-}
-
 sr_status render_write_outputs(const struct rendering *r, const struct sr_film *film, double elapsed_s,
                                bool is_complete, struct sr_error *error)
 {
-    struct sr_image *image;
-    if (sr_render_image(film, true, r->job->replicates > 0 || r->job->adaptive.is_on, &image, error) != SR_OK)
-        return error->status;
-    describe(image, r, film, elapsed_s, is_complete, error);
     const struct render_arguments *a = r->arguments;
-    struct sr_image_write_options options = {
-        .tone = {.op = SR_TONE_LINEAR, .is_auto = !a->has_exposure, .exposure_EV = (float)a->exposure_EV}};
+    const char *names[RENDER_MAX_OUTPUTS];
     for (int i = 0; i < render_output_count(a); ++i)
-        sr_image_write(render_output_name(a, r->scene, i), image, &options, error);
-    sr_image_free(image);
-    return error->status;
+        names[i] = render_output_name(a, r->scene, i);
+    struct picture p = {.film = film, .about = r->about, .is_replicated = r->job->replicates > 0 || r->job->adaptive.is_on, .is_complete = is_complete,
+                        .has_exposure = a->has_exposure, .exposure_EV = a->exposure_EV, .has_stamp = a->stamp, .elapsed_s = elapsed_s};
+    return picture_write(&p, names, render_output_count(a), error);
 }
 
 /* ---- signals: flags, looked at by those who work ---- */
@@ -208,6 +157,8 @@ void render_on_progress(void *user, const struct sr_render_progress *p)
     if (r->on_terminal)
         print_progress(p);
     bool is_asked = atomic_exchange(&is_partial_wanted, false);
+    if (a->has_range)
+        return; // a part is written when it is whole
     if (!is_asked && !(a->partial_s > 0 && p->elapsed_s - r->last_partial_s >= a->partial_s))
         return;
     r->last_partial_s = p->elapsed_s;

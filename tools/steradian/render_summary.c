@@ -7,14 +7,6 @@
 
 enum { METER_SAMPLES = 4096, METER_REPLICATES = 32 };
 
-static struct sr_quantity mean_luminance(const struct sr_film *film)
-{
-    const struct sr_colour_space *space = sr_colour_space(film->settings.space);
-    struct sr_film_mean L = sr_film_region_mean(film, 0, 0, film->width, film->height, space->xyz_from_rgb[1]);
-    struct sr_unit unit = sr_unit_of(SR_KIND_RADIANCE, SR_PHOTOPIC, false);
-    return (struct sr_quantity){.value = L.mean, .u = L.standard_error, .degrees = L.degrees, .unit = unit};
-}
-
 /* The noise of the picture, of what --error speaks [1]; NaN where it is not known. */
 static double relative_error(const struct rendering *r, const struct sr_film *film)
 {
@@ -25,14 +17,6 @@ bool render_missed_target(const struct rendering *r, const struct sr_film *film)
 {
     double goal = r->job->adaptive.error;
     return goal > 0 && !(relative_error(r, film) <= 1.1 * goal); // the error itself is known to some percent
-}
-
-double render_mean_spp(const struct sr_film *film)
-{
-    double sum = 0, count = (double)film->width * film->height;
-    for (size_t i = 0; i < (size_t)film->width * film->height; ++i)
-        sum += film->pixels[i].n;
-    return sum / count;
 }
 
 /* Of how many pixels the error bars are told to be doubtful: of more than one in twenty, or it is not told. */
@@ -75,12 +59,12 @@ json_t *render_measure(const struct render_arguments *a, const struct sr_render_
 void render_print_summary(const struct rendering *r, const struct sr_film *film, const struct sr_render_report *report)
 {
     struct sr_scene_counts all = sr_scene_count(r->scene->scene), *counts = &all;
-    struct sr_quantity L = mean_luminance(film);
+    struct sr_quantity L = picture_mean_luminance(film);
     char text[128];
     fprintf(stderr, "mean luminance %s%s\n", sr_quantity_text("L_v", &L, text, sizeof text),
             r->job->replicates || r->job->adaptive.is_on || !isfinite(L.u) ? "" : ", conservative");
     fprintf(stderr, "%u x %u pixels, %.6g samples each%s, %s units; %.2f s, %.2f M paths/s, %.2f M rays/s\n", film->width,
-            film->height, render_mean_spp(film), r->job->adaptive.is_on ? " on average" : "", r->scene->units == SR_UNITS_SI ? "SI" : "photometric",
+            film->height, picture_mean_spp(film), r->job->adaptive.is_on ? " on average" : "", r->scene->units == SR_UNITS_SI ? "SI" : "photometric",
             report->render_s, 1e-6 * rate((double)report->paths, report->render_s),
             1e-6 * rate((double)(report->rays + report->shadow_rays), report->render_s));
     if (r->job->adaptive.is_on)
@@ -111,21 +95,24 @@ void render_print_summary(const struct rendering *r, const struct sr_film *film,
 static json_t *settings_json(const struct rendering *r, const struct sr_film *film)
 {
     const struct sr_render_job *job = r->job;
-    return json_pack("{s:o, s:s, s:i, s:i, s:s, s:f, s:I, s:I, s:b, s:s, s:s, s:{s:o, s:o, s:s}}", "scene",
+    json_t *j = json_pack("{s:o, s:s, s:i, s:i, s:s, s:f, s:I, s:I, s:b, s:s, s:s, s:{s:o, s:o, s:s}}", "scene",
                      command_json_text(r->arguments->scene), "units",
                      r->scene->units == SR_UNITS_SI ? "si" : "photometric", "width", (int)film->width, "height", (int)film->height,
-                     "size_unit", "pixel", "spp", render_mean_spp(film), "seed", (json_int_t)job->seed, "replicates",
+                     "size_unit", "pixel", "spp", picture_mean_spp(film), "seed", (json_int_t)job->seed, "replicates",
                      (json_int_t)job->replicates, "adaptive", job->adaptive.is_on, "integrator", sr_integrator_label(&job->integrator), "sampler",
                      job->sampler == SR_SAMPLER_SOBOL ? "sobol" : "independent", "wavelengths", "min",
                      command_json_number((double)job->lambda.lo), "max", command_json_number((double)job->lambda.hi),
                      "unit", "nm");
+    if (j && r->range.end)
+        json_object_set_new(j, "sample_range", json_pack("[I, I]", (json_int_t)r->range.begin, (json_int_t)r->range.end));
+    return j;
 }
 
 int render_print_json(const struct rendering *r, const struct sr_film *film, const struct sr_render_report *report,
                       json_t *meters)
 {
     struct sr_scene_counts counts = sr_scene_count(r->scene->scene);
-    struct sr_quantity L = mean_luminance(film);
+    struct sr_quantity L = picture_mean_luminance(film);
     char hash[17];
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)r->scene->hash);
     json_t *outputs = json_array();
