@@ -58,7 +58,7 @@ static sr_status import(const char *path, const struct sr_import_options *option
                               .error = error,
                               .threads = options->threads > 0 ? options->threads : sr_thread_count()};
     enum sr_light_choice choice = SR_LIGHTS_BVH;
-    sr_status status = sr_describe(path, options, b.arena, log, &d, error);
+    sr_status status = sr_describe(path, options, &b.scratch, log, &d, error);
     b.hash = d.hash;
     if (status == SR_OK)
         status = sr_pbrt_uncertainties(&b);
@@ -114,7 +114,7 @@ sr_status sr_import_pbrt_material(const char *path, const char *name, struct sr_
                               .error = error,
                               .threads = 1};
     *out = NULL;
-    sr_status status = sr_describe(path, &nothing, arena, log, &d, error);
+    sr_status status = sr_describe(path, &nothing, &b.scratch, log, &d, error);
     b.hash = d.hash;
     struct sr_pbrt_material_ref ref = {.name = name, .where = {path, 1, 1}};
     if (status == SR_OK && name[0] == '#') { // the list's first is what shapes wear before any directive

@@ -21,6 +21,7 @@ struct placed_shape {
     bool has_footprint;       // its material looks at footprints
     bool is_plain;            // neither its material nor its light looks at more than p, n and ns
     bool is_mesh;             // of triangles, which Embree meets itself
+    bool is_paired;           // which gets them two at a time, those that stay alone with an empty second half
 };
 
 /* What instances share; index 0 is the world. */
@@ -75,6 +76,15 @@ struct mover_def {
 
 void scene_find_media(struct sr_scene *scene); // once rays can be cast
 void scene_build_embree(struct sr_scene *scene, int threads);
+
+/* Which primitive of the shape the ray caster means; on paired triangles *at is put right. */
+static inline uint32_t primitive_met(const struct placed_shape *s, uint32_t met, sr_vec2 *at)
+{
+    if (!s->is_paired)
+        return met;
+    uint32_t pairs = ((const struct sr_shape_mesh *)s->shape.self)->pairs;
+    return met < pairs ? 2 * met + sr_shape_half_of_pair(at) : pairs + met;
+}
 /* Alpha test of a hit: true where the surface is. Partial coverage is decided by a hash of the ray. */
 bool scene_alpha_accepts(const struct placed_shape *s, uint32_t primitive, sr_vec2 hit, sr_vec3 o, sr_vec3 d);
 

@@ -61,8 +61,10 @@ static inline bool raycast(const struct sr_scene *scene, const struct sr_ray *ra
     const struct instance *instance = rh.hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? NULL : &scene->instances[rh.hit.instID[0] - scene->first_instance];
     const struct object *object = instance ? instance->object : scene->world;
     const struct placed_shape *s = &object->shapes[rh.hit.geomID];
+    sr_vec2 at = {rh.hit.u, rh.hit.v};
+    uint32_t primitive = primitive_met(s, rh.hit.primID, &at);
     if (bare && s->is_plain && !instance && s->shape.model->bare_point) {
-        s->shape.model->bare_point(s->shape.self, rh.hit.primID, (sr_vec2){rh.hit.u, rh.hit.v}, &hit->point);
+        s->shape.model->bare_point(s->shape.self, primitive, at, &hit->point);
         hit->point.dpdus = (sr_vec3){0, 0, 0};
     } else if (SR_UNLIKELY(s->shape.model->seen_point)) {
         sr_vec3 d = ray->d;
@@ -70,9 +72,9 @@ static inline bool raycast(const struct sr_scene *scene, const struct sr_ray *ra
             struct sr_transform t = instance_transform(instance, ray->time);
             d = sr_inverse_vector(&t, d);
         }
-        s->shape.model->seen_point(s->shape.self, rh.hit.primID, (sr_vec2){rh.hit.u, rh.hit.v}, d, &hit->point);
+        s->shape.model->seen_point(s->shape.self, primitive, at, d, &hit->point);
     } else {
-        s->shape.model->point(s->shape.self, rh.hit.primID, (sr_vec2){rh.hit.u, rh.hit.v}, &hit->point);
+        s->shape.model->point(s->shape.self, primitive, at, &hit->point);
     }
     hit->point.time = ray->time;
     if (SR_UNLIKELY(instance)) {
@@ -84,7 +86,7 @@ static inline bool raycast(const struct sr_scene *scene, const struct sr_ray *ra
     hit->t = rh.ray.tfar;
     hit->material = s->material;
     hit->media = s->media;
-    hit->light = s->first_light == SR_NO_LIGHT ? SR_NO_LIGHT : s->first_light + (s->per_light == 2 ? rh.hit.primID / 2 : rh.hit.primID);
+    hit->light = s->first_light == SR_NO_LIGHT ? SR_NO_LIGHT : s->first_light + (s->per_light == 2 ? primitive / 2 : primitive);
     hit->object = s->number;
     hit->material_number = s->material_number;
     hit->has_footprint = s->has_footprint;

@@ -383,10 +383,14 @@ static sr_status prepare(void *self, const struct sr_shape_placement *placement,
     sr_status status = read_net(l, &m, error);
     for (int i = 0; i < l->levels && status == SR_OK; ++i)
         status = split(&m, error);
+    struct sr_arena made = {0};
     if (status == SR_OK)
-        status = finish(&m, l->unbiased, arena, &l->mesh, error);
+        status = finish(&m, l->unbiased, &made, &l->mesh, error);
     free_net(&m);
-    return status == SR_OK ? sr_shape_trianglemesh.prepare(&l->mesh, placement, arena, error) : status;
+    if (status == SR_OK)
+        status = sr_shape_trianglemesh.prepare(&l->mesh, placement, arena, error);
+    sr_arena_free(&made);
+    return status;
 }
 
 const struct sr_shape_model sr_shape_loopsubdiv = {

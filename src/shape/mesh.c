@@ -85,6 +85,12 @@ static sr_vec3 place_normal(const struct sr_transform *t, sr_vec3 n, double side
     return (sr_vec3){(float)(r[0] * s), (float)(r[1] * s), (float)(r[2] * s)};
 }
 
+/* The values of s, if there are any, are the arena's own from now on. */
+static bool own(struct sr_slice *s, size_t size, struct sr_arena *arena)
+{
+    return s->count == 0 || (s->data = sr_arena_copy(arena, s->data, s->count * size)) != NULL;
+}
+
 sr_status sr_mesh_place(const struct sr_mesh_arrays *m, const struct sr_shape_placement *placement, bool *flip_normals,
                         struct sr_arena *arena, struct sr_error *error)
 {
@@ -100,7 +106,8 @@ sr_status sr_mesh_place(const struct sr_mesh_arrays *m, const struct sr_shape_pl
     sr_vec3 *P = sr_arena_alloc(arena, bytes + 4); // ray casters read 16 bytes a vertex
     sr_vec3 *N = m->N->count ? sr_arena_alloc(arena, bytes) : NULL;
     sr_vec3 *S = m->S && m->S->count ? sr_arena_alloc(arena, bytes) : NULL;
-    if (!P || (m->N->count && !N) || (m->S && m->S->count && !S))
+    if (!P || (m->N->count && !N) || (m->S && m->S->count && !S) || !own(m->indices, sizeof(int32_t), arena) ||
+        !own(m->uv, sizeof(sr_vec2), arena) || !own(m->face_indices, sizeof(int32_t), arena))
         return sr_fail(error, SR_ERROR_RESOURCE, "%s: no memory for %u vertices", m->name, m->P->count);
 
     double side = placement->reverse_orientation ? -1 : 1;

@@ -13,7 +13,7 @@ struct sr_mesh_arrays {
     struct sr_slice *indices, *P, *N, *S, *uv, *face_indices;
 };
 
-/* Checks all, and replaces P, N and S by copies in the space of placement. */
+/* Checks all, and replaces all by copies: P, N and S in the space of placement. */
 sr_status sr_mesh_place(const struct sr_mesh_arrays *m, const struct sr_shape_placement *placement, bool *flip_normals,
                         struct sr_arena *arena, struct sr_error *error);
 

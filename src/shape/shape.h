@@ -83,7 +83,7 @@ struct sr_shape {
     const void *self;
 };
 
-/* ---- meshes: stored once, shared with the ray caster ---- */
+/* ---- meshes: all arrays are copied by `prepare`, stored once, shared with the ray caster ---- */
 
 struct sr_shape_mesh {
     struct sr_slice indices;      // int32, three a triangle
@@ -93,6 +93,9 @@ struct sr_shape_mesh {
     struct sr_slice uv;           // sr_vec2 [1], or empty
     struct sr_slice face_indices; // int32, one a triangle, or empty
     bool flip_normals;            // derived: outside is on the other side of the winding
+    uint32_t pairs;               // derived: the first 2 pairs triangles are pairs, as sr_shape_pair_triangles leaves them
+    const uint8_t *turns;         // derived: NULL, or of triangle i turns[i & turn_mask]: the place at which its first corner stands
+    uint32_t turn_mask;
 };
 /* Bilinear patches: four vertices a patch, (0,0) (1,0) (0,1) (1,1). Same members and the same meaning. */
 struct sr_shape_patches {
@@ -115,6 +118,20 @@ uint32_t sr_shape_split_planar_quads(const struct sr_shape_patches *patches, str
  * of one, without N; then patch i is the same surface, prepared, with the same outside, but without uv. */
 bool sr_shape_join_triangles(const struct sr_shape_mesh *triangles, struct sr_arena *arena, struct sr_shape_patches *patches,
                              struct sr_error *error);
+
+/* For ray casters that meet two triangles at a time: puts the triangles of the prepared mesh that follow each other and share
+ * an edge first, and turns them so that those of pair i are (d, a, b) (c, d, b) of the quad a b c d around both: its corners stand
+ * side by side in the indices, from 6 i + 1 on. Nothing of the surface changes but the numbers of the triangles. */
+sr_status sr_shape_pair_triangles(struct sr_shape_mesh *m, struct sr_arena *arena, struct sr_error *error);
+uint32_t sr_shape_count_pairs(const struct sr_shape_mesh *m); // how many it would make
+/* A point of the quad a b c d at u and v, as ray casters count them: (1-u-v) a + u b + v d, where that is not on the side of c;
+ * there u and v count from c, as 1-u and 1-v. Returns which triangle of the pair it is on, and where. */
+static inline uint32_t sr_shape_half_of_pair(sr_vec2 *at)
+{
+    uint32_t second = at->x + at->y > 1;
+    *at = second ? (sr_vec2){1 - at->x, 1 - at->y} : (sr_vec2){1 - at->x - at->y, at->x};
+    return second;
+}
 
 /* ---- what becomes a mesh ---- */
 

@@ -73,6 +73,18 @@ static float area(const void *self, uint32_t primitive)
     return (float)(0.5 * sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]));
 }
 
+/* Corners and their weights in the order of the file. */
+static void turn_back(const struct sr_shape_mesh *m, uint32_t primitive, const int32_t **corner, float b[3], int32_t turned[3])
+{
+    int turn = m->turns[primitive & m->turn_mask];
+    float w[3] = {b[0], b[1], b[2]};
+    for (int i = 0; i < 3; ++i) {
+        turned[i] = (*corner)[(i + turn) % 3];
+        b[i] = w[(i + turn) % 3];
+    }
+    *corner = turned;
+}
+
 static sr_vec3 blend(const sr_vec3 *a, const int32_t *c, float b0, float b1, float b2)
 {
     return sr_add(sr_add(sr_scale(b0, a[c[0]]), sr_scale(b1, a[c[1]])), sr_scale(b2, a[c[2]]));
@@ -107,8 +119,14 @@ static void point(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_p
         __builtin_prefetch((const sr_vec3 *)m->N.data + c[i]);
     for (int i = 0; m->uv.count && i < 3; ++i)
         __builtin_prefetch((const sr_vec2 *)m->uv.data + c[i]);
-    const sr_vec3 v[3] = {P[c[0]], P[c[1]], P[c[2]]};
     float b1 = hit.x, b2 = hit.y, b0 = 1 - b1 - b2;
+    int32_t turned[3];
+    if (SR_UNLIKELY(m->turns)) {
+        float b[3] = {b0, b1, b2};
+        turn_back(m, primitive, &c, b, turned);
+        b0 = b[0], b1 = b[1], b2 = b[2];
+    }
+    const sr_vec3 v[3] = {P[c[0]], P[c[1]], P[c[2]]};
 
     x->p = sr_add(sr_add(sr_scale(b0, v[0]), sr_scale(b1, v[1])), sr_scale(b2, v[2]));
     x->p_error = error_bound(v, b0, b1, b2);
@@ -221,9 +239,15 @@ static sr_vec2 uv(const void *self, uint32_t primitive, sr_vec2 hit)
 {
     const struct sr_shape_mesh *m = self;
     float b1 = hit.x, b2 = hit.y, b0 = 1 - b1 - b2;
+    const int32_t *c = corners(m, primitive);
+    if (!m->uv.count && m->turns) {
+        float b[3] = {b0, b1, b2};
+        int32_t turned[3];
+        turn_back(m, primitive, &c, b, turned);
+        return (sr_vec2){b[1] + b[2], b[2]};
+    }
     if (!m->uv.count)
         return (sr_vec2){b1 + b2, b2};
-    const int32_t *c = corners(m, primitive);
     const sr_vec2 *t = m->uv.data;
     return (sr_vec2){b0 * t[c[0]].x + b1 * t[c[1]].x + b2 * t[c[2]].x,
                      b0 * t[c[0]].y + b1 * t[c[1]].y + b2 * t[c[2]].y};

@@ -127,7 +127,7 @@ static sr_status bind_tuple(struct sr_pbrt_build *b, const struct sr_pbrt_entity
     return SR_OK;
 }
 
-/* Long runs are used where they lie; the short ones are copied to the scene. */
+/* The description's values end with it, so that what stays is copied to the scene. */
 static sr_status bind_run(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p,
                           const struct sr_param *row, void *member)
 {
@@ -152,7 +152,7 @@ static sr_status bind_run(struct sr_pbrt_build *b, const struct sr_pbrt_entity *
                             p->count, arity);
     size_t size = p->count * sizeof(float);
     const void *data = p->ints ? (const void *)p->ints : p->floats;
-    if (size <= SR_PBRT_SHORT_RUN_B && !b->is_borrowing) {
+    if (!b->is_borrowing) {
         void *copy = sr_arena_alloc(b->arena, size + 16);
         if (!copy)
             return sr_pbrt_no_memory(b);

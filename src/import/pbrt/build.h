@@ -54,7 +54,7 @@ struct sr_pbrt_build {
     uint64_t hash;
     float shutter_open, shutter_close; // [s]
     float edge_scale;  // [1] of "edgelength"
-    bool is_borrowing; // what is bound ends before the description does: runs stay where they lie
+    bool is_borrowing; // what is bound copies its runs, or ends before the description does: they stay where they lie
     float film_diagonal; // [m]
     bool is_in_world;    // a G-buffer's points
     int depth; // of textures and materials being made

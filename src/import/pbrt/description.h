@@ -2,7 +2,7 @@
 /* What a pbrt file says, before anything is made of it: a list of entities, each with its parameters and with the graphics
  * state that held where it stood. Reading fills it (parse.c, state.c), building reads it (build.c).
  *
- * Everything lives in two arenas: numbers that a scene may keep (vertices, indices) in `data`, all else in `words`. */
+ * Everything lives in two arenas, its own, `words`, and one that is lent to it, `data`; a scene copies what it keeps. */
 #ifndef SR_IMPORT_PBRT_DESCRIPTION_H
 #define SR_IMPORT_PBRT_DESCRIPTION_H
 
@@ -41,9 +41,6 @@ struct sr_pbrt_param {
     const int32_t *ints;        // BOOL (0, 1) and INTEGER
     const char *const *strings; // STRING, TEXTURE, SPECTRUM by name
 };
-
-/* Runs of numbers up to this size are copied when a scene keeps them; longer ones lie in its arena from the start. */
-enum { SR_PBRT_SHORT_RUN_B = 1024 };
 
 struct sr_pbrt_params {
     struct sr_pbrt_param *items; // the entity's own first, then those of Attribute
@@ -171,7 +168,7 @@ struct sr_pbrt_description {
     uint64_t hash; // of it
 };
 
-/* Reads a file and all that it includes. data must outlive what is made of the description. The description is valid (and
+/* Reads a file and all that it includes. data must outlive the description. The description is valid (and
  * must be freed) also after a failure. */
 sr_status sr_pbrt_read(const char *path, struct sr_arena *data, struct sr_log *log, struct sr_pbrt_description *out,
                        struct sr_error *error);

@@ -231,8 +231,7 @@ static sr_status read_values(struct sr_pbrt_description *d, struct sr_pbrt_lexer
     return status;
 }
 
-/* From the scratch to where it stays, with 16 readable bytes behind. Long runs of what a scene keeps as it is (indices,
- * texture coordinates) go to its arena; positions and normals are transformed, and so copied, anyway. */
+/* From the scratch to where it stays, with 16 readable bytes behind. */
 static sr_status keep_values(struct sr_pbrt_description *d, struct sr_pbrt_param *p, enum storage storage,
                              const struct sr_pbrt_scratch *s, struct sr_error *error)
 {
@@ -243,9 +242,7 @@ static sr_status keep_values(struct sr_pbrt_description *d, struct sr_pbrt_param
     if (from->count > INT32_MAX)
         return sr_pbrt_fail(d, p->where, error, SR_ERROR_INPUT, "\"%s\" has %zu values; expected at most 2147483647",
                             p->name, from->count);
-    bool is_kept = size > SR_PBRT_SHORT_RUN_B && (storage == INTS || p->type == SR_PBRT_POINT2 ||
-                                                  p->type == SR_PBRT_VECTOR2 || p->type == SR_PBRT_FLOAT);
-    void *to = is_kept ? sr_arena_alloc(d->data, size + 16) : sr_pbrt_words(d, size + 16);
+    void *to = sr_pbrt_words(d, size + 16);
     if (!to)
         return no_memory(p, error);
     if (size)

@@ -133,17 +133,9 @@ static sr_status prepare(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s,
     return m->prepare(self, &placement, b->arena, &inner) == SR_OK ? SR_OK : sr_pbrt_wrap(b, &s->entity, &inner);
 }
 
-static sr_status copy_run(struct sr_pbrt_build *b, const void *from, size_t count, size_t size, struct sr_slice *out)
+static struct sr_slice slice(const void *data, uint32_t count)
 {
-    *out = (struct sr_slice){NULL, 0};
-    if (!from || count == 0)
-        return SR_OK;
-    void *to = sr_arena_alloc(b->arena, count * size + 16);
-    if (!to)
-        return sr_pbrt_no_memory(b);
-    memcpy(to, from, count * size);
-    *out = (struct sr_slice){to, (uint32_t)count};
-    return SR_OK;
+    return (struct sr_slice){data, data ? count : 0};
 }
 
 /* Quads go around the face, patches go by rows: the last two change places. */
@@ -156,19 +148,17 @@ static void reorder_quads(int32_t *indices, uint32_t quads)
     }
 }
 
-static sr_status make_triangles(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, const struct sr_ply_mesh *ply,
-                                struct sr_slice uv, struct sr_shape *out)
+static sr_status make_triangles(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, const struct sr_ply_mesh *ply, struct sr_shape *out)
 {
     struct sr_shape_mesh *m = sr_arena_alloc(b->arena, sizeof *m);
     if (!m)
         return sr_pbrt_no_memory(b);
-    m->P = (struct sr_slice){ply->P, ply->vertex_count};
-    m->N = (struct sr_slice){ply->N, ply->N ? ply->vertex_count : 0};
-    m->uv = uv;
-    sr_status status = copy_run(b, ply->triangles, 3 * (size_t)ply->triangle_count, sizeof(int32_t), &m->indices);
-    if (status == SR_OK)
-        status = copy_run(b, ply->face_indices, ply->triangle_count, sizeof(int32_t), &m->face_indices);
-    return status == SR_OK ? prepare(b, s, &sr_shape_trianglemesh, m, out) : status;
+    m->P = slice(ply->P, ply->vertex_count);
+    m->N = slice(ply->N, ply->vertex_count);
+    m->uv = slice(ply->uv, ply->vertex_count);
+    m->indices = slice(ply->triangles, 3 * ply->triangle_count);
+    m->face_indices = slice(ply->face_indices, ply->triangle_count);
+    return prepare(b, s, &sr_shape_trianglemesh, m, out);
 }
 
 /* Patches, of which those that are flat parallelograms become triangles unless they shine. */
@@ -180,7 +170,7 @@ static sr_status add_patches(struct sr_pbrt_build *b, const struct sr_pbrt_shape
     if (!triangles || !rest)
         return sr_pbrt_no_memory(b);
     *rest = *patches;
-    uint32_t moved = s->area_light1 ? 0 : sr_shape_split_planar_quads(patches, b->arena, triangles, rest);
+    uint32_t moved = s->area_light1 ? 0 : sr_shape_split_planar_quads(patches, &b->scratch, triangles, rest);
     if (moved == UINT32_MAX)
         return sr_pbrt_no_memory(b);
     sr_status status = SR_OK;
@@ -192,18 +182,14 @@ static sr_status add_patches(struct sr_pbrt_build *b, const struct sr_pbrt_shape
     return status;
 }
 
-static sr_status make_quads(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, const struct sr_ply_mesh *ply,
-                            struct sr_slice uv, struct sr_shape shapes[], int *count)
+static sr_status make_quads(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, struct sr_ply_mesh *ply, struct sr_shape shapes[], int *count)
 {
-    struct sr_shape_patches m = {
-        .P = {ply->P, ply->vertex_count}, .N = {ply->N, ply->N ? ply->vertex_count : 0}, .uv = uv};
-    sr_status status = copy_run(b, ply->quads, 4 * (size_t)ply->quad_count, sizeof(int32_t), &m.indices);
-    if (status == SR_OK)
-        status = copy_run(b, ply->face_indices ? ply->face_indices + ply->triangle_count : NULL, ply->quad_count,
-                          sizeof(int32_t), &m.face_indices);
-    if (status != SR_OK)
-        return status;
-    reorder_quads((int32_t *)(uintptr_t)m.indices.data, ply->quad_count);
+    reorder_quads(ply->quads, ply->quad_count);
+    struct sr_shape_patches m = {.P = slice(ply->P, ply->vertex_count),
+                                 .N = slice(ply->N, ply->vertex_count),
+                                 .uv = slice(ply->uv, ply->vertex_count),
+                                 .indices = slice(ply->quads, 4 * ply->quad_count),
+                                 .face_indices = slice(ply->face_indices ? ply->face_indices + ply->triangle_count : NULL, ply->quad_count)};
     return add_patches(b, s, &m, shapes, count);
 }
 
@@ -236,14 +222,11 @@ static sr_status make_ply(struct adder *a, const struct sr_pbrt_shape *s, struct
     if (ply->dropped_count)
         sr_pbrt_warn(b->d, s->entity.where, "%s: %u faces have fewer than three corners: left out", l->path,
                      ply->dropped_count);
-    struct sr_slice uv;
     sr_status status = displace(b, s, ply);
-    if (status == SR_OK)
-        status = copy_run(b, ply->uv, ply->vertex_count, sizeof(sr_vec2), &uv);
     if (status == SR_OK && ply->triangle_count)
-        status = make_triangles(b, s, ply, uv, &shapes[(*count)++]);
+        status = make_triangles(b, s, ply, &shapes[(*count)++]);
     if (status == SR_OK && ply->quad_count)
-        status = make_quads(b, s, ply, uv, shapes, count);
+        status = make_quads(b, s, ply, shapes, count);
     sr_ply_free(ply);
     return status;
 }
@@ -270,7 +253,9 @@ static sr_status make_shape(struct adder *a, const struct sr_pbrt_shape *s, stru
     void *self = sr_arena_alloc(b->arena, m->size);
     if (!self)
         return sr_pbrt_no_memory(b);
+    b->is_borrowing = true; // shapes copy what they keep
     sr_status status = sr_pbrt_bind(b, m->params, &s->entity, (struct sr_pbrt_use){SR_PARAM_ALBEDO, false}, self);
+    b->is_borrowing = false;
     return status == SR_OK ? prepare(b, s, m, self, &shapes[(*count)++]) : status;
 }
 
