@@ -13,6 +13,7 @@
 
 enum { REPLICATES = 4, MOST_PILOT = 64, REACH = 3 }; // replicates of a half's pilot, and of what follows; reach [pixel]
 static const double even_share = 0.1;
+#define PILOT_SHARE 0.05 // of the work, for progress: each half's pilot
 
 /* Half a picture. */
 struct half {
@@ -70,57 +71,79 @@ static double wanted_spp(const struct sr_render_job *job, const struct half *by,
     return n;
 }
 
-/* Further samples of a half's replicates, as the other half sees fit; their sum. */
-static double share_out(struct half *h, const struct half *by, double spp, uint32_t pilot)
+/* Further samples of a half's replicates, as the other half sees fit. */
+static void share_out(struct half *h, const struct half *by, double spp, uint32_t pilot)
 {
-    double sum = 0;
     size_t count = (size_t)h->film->width * h->film->height;
     for (size_t i = 0; i < count; ++i) {
         double relative = by->sigma > 0 ? (double)by->deviation[i] / by->sigma : 1;
         double n = spp * (even_share + (1 - even_share) * relative), left = (n - pilot) / (2 * REPLICATES);
         h->counts[i] = left > 1 ? left < 1e9 ? (uint32_t)ceil(left) : 1000000000u : 1;
-        sum += REPLICATES * (double)h->counts[i];
     }
-    return sum;
 }
 
-static sr_status render_halves(const struct sr_render_job *job, struct half half[2], struct sr_render_report *report, struct sr_error *error)
+static bool settle_counts(const struct sr_render_job *job, struct half half[2], uint32_t pilot, double pilot_s)
 {
-    struct sr_render_pass pass = {.blocks = REPLICATES, .start_s = sr_clock_s()};
-    uint32_t per_replicate = job->spp / (4 * 2 * REPLICATES), most = MOST_PILOT / (2 * REPLICATES);
-    pass.per_replicate = per_replicate < 1 ? 1 : per_replicate > most ? most : per_replicate;
-    uint32_t pilot = 2 * REPLICATES * pass.per_replicate;
-    sr_status status = SR_OK;
-    for (int i = 0; i < 2 && status == SR_OK; ++i) {
-        pass.film = half[i].film;
-        pass.first_replicate = (uint32_t)i * REPLICATES;
-        pass.share_begin = pass.share_end;
-        pass.share_end += 0.05;
-        status = sr_render_pass(job, &pass, report, error);
-    }
-    if (status != SR_OK)
-        return status;
     const struct sr_colour_space *space = sr_colour_space(job->film.space);
     for (int i = 0; i < 2; ++i)
         if (!find_deviations(&half[i], space->xyz_from_rgb[1]))
-            return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for the noise of a picture");
-    double pilot_s = sr_clock_s() - pass.start_s, sum[2];
+            return false;
     for (int i = 0; i < 2; ++i)
-        sum[i] = share_out(&half[i], &half[!i], wanted_spp(job, &half[!i], pilot, pilot_s), pilot);
-    for (int i = 0; i < 2 && status == SR_OK; ++i) {
+        share_out(&half[i], &half[!i], wanted_spp(job, &half[!i], pilot, pilot_s), pilot);
+    return true;
+}
+
+/* Samples of a half after its pilot. */
+static double count_all(const struct half *h)
+{
+    double sum = 0;
+    size_t count = (size_t)h->film->width * h->film->height;
+    for (size_t i = 0; i < count; ++i)
+        sum += REPLICATES * (double)h->counts[i];
+    return sum;
+}
+
+static sr_status render_halves(const struct sr_render_job *job, struct half half[2], struct sr_keeper *keeper, struct sr_render_report *report,
+                               struct sr_error *error)
+{
+    struct sr_render_pass pass = {.keeper = keeper, .blocks = REPLICATES, .start_s = sr_clock_s() - report->render_s};
+    uint32_t per_replicate = job->spp / (4 * 2 * REPLICATES), most = MOST_PILOT / (2 * REPLICATES);
+    pass.per_replicate = per_replicate < 1 ? 1 : per_replicate > most ? most : per_replicate;
+    uint32_t pilot = 2 * REPLICATES * pass.per_replicate;
+    sr_status status;
+    for (; keeper->pass < 2; ++keeper->pass) {
+        uint32_t i = keeper->pass;
         pass.film = half[i].film;
-        pass.first_replicate = (uint32_t)(2 + i) * REPLICATES;
-        pass.counts = half[i].counts;
-        pass.share_begin = pass.share_end;
-        pass.share_end = i ? 1 : pass.share_begin + (1 - pass.share_begin) * sum[0] / (sum[0] + sum[1]);
+        pass.first_replicate = i * REPLICATES;
+        pass.share_begin = PILOT_SHARE * i;
+        pass.share_end = PILOT_SHARE * (i + 1);
         status = sr_render_pass(job, &pass, report, error);
+        if (status != SR_OK)
+            return status;
+        if (i == 1 && !settle_counts(job, half, pilot, sr_clock_s() - pass.start_s))
+            return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for the noise of a picture");
     }
-    return status;
+    double sum[2] = {count_all(&half[0]), count_all(&half[1])};
+    pass.blocks_before = REPLICATES;
+    for (; keeper->pass < 4; ++keeper->pass) {
+        uint32_t i = keeper->pass - 2;
+        pass.film = half[i].film;
+        pass.first_replicate = (2 + i) * REPLICATES;
+        pass.counts = half[i].counts;
+        double split = 2 * PILOT_SHARE + (1 - 2 * PILOT_SHARE) * sum[0] / (sum[0] + sum[1]);
+        pass.share_begin = i ? split : 2 * PILOT_SHARE;
+        pass.share_end = i ? 1 : split;
+        status = sr_render_pass(job, &pass, report, error);
+        if (status != SR_OK)
+            return status;
+    }
+    return SR_OK;
 }
 
 sr_status sr_render_adaptive(const struct sr_render_job *job, struct sr_film **film, struct sr_render_report *report, struct sr_error *error)
 {
     struct half half[2] = {0};
+    struct sr_keeper keeper = {.keep = job->keep, .film_count = 2};
     sr_status status = SR_OK;
     for (int i = 0; i < 2 && status == SR_OK; ++i) {
         status = sr_film_create(&job->film, job->with_aov, &half[i].film, error);
@@ -131,11 +154,17 @@ sr_status sr_render_adaptive(const struct sr_render_job *job, struct sr_film **f
         half[i].counts = sr_alloc(count * sizeof *half[i].counts);
         if (!half[i].deviation || !half[i].counts)
             status = sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for adaptive sampling");
+        keeper.films[i] = half[i].film;
+        keeper.counts[i] = half[i].counts;
     }
     if (status == SR_OK)
-        status = render_halves(job, half, report, error);
+        status = sr_keeper_resume(&keeper, report, error);
+    if (status == SR_OK && !keeper.is_complete)
+        status = render_halves(job, half, &keeper, report, error);
+    sr_keeper_end(&keeper, report);
     if (status == SR_OK || status == SR_CANCELLED) {
-        sr_film_join_halves(half[0].film, half[1].film);
+        if (!keeper.is_complete)
+            sr_film_join_halves(half[0].film, half[1].film);
         *film = half[0].film;
         half[0].film = NULL;
     }

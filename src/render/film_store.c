@@ -72,3 +72,28 @@ sr_status sr_film_get(const struct sr_store_in *in, const char *path, const char
     film->splats->dropped = paths[PATHS_COUNT - 1];
     return SR_OK;
 }
+
+struct sr_film *sr_film_twin(const struct sr_film *film, struct sr_error *error)
+{
+    struct sr_film *twin;
+    if (sr_film_create(&film->settings, film->has_aov, &twin, error) == SR_OK && film->splats && sr_film_add_splats(twin, film->splats->groups, error) != SR_OK) {
+        sr_film_destroy(twin);
+        twin = NULL;
+    }
+    return twin;
+}
+
+void sr_film_copy(struct sr_film *to, const struct sr_film *from)
+{
+    uint64_t ignored[PATHS_COUNT];
+    struct part a[FILM_PARTS], b[FILM_PARTS];
+    parts_of(to, ignored, a);
+    parts_of(from, ignored, b);
+    for (int i = 0; i < FILM_PARTS - 1; ++i)
+        if (b[i].data)
+            memcpy(a[i].data, b[i].data, b[i].size);
+    if (!from->splats)
+        return;
+    memcpy(to->splats->paths, from->splats->paths, sizeof to->splats->paths);
+    to->splats->dropped = from->splats->dropped;
+}

@@ -63,8 +63,11 @@ void sr_block_tree_fold(struct sr_block_tree *t);
 
 /* ---- render.c ---- */
 
+struct sr_keeper;
 struct sr_render_pass {
     struct sr_film *film;            // what the samples are added to
+    struct sr_keeper *keeper;        // NULL: nothing is kept
+    uint32_t blocks_before;          // of each pixel, from earlier passes
     uint32_t blocks;                 // of each pixel
     uint32_t first_replicate;        // block b is the replicate first_replicate + b
     uint32_t per_replicate;          // samples of a block; 0: the blocks are parts of one net of job->spp samples
@@ -90,6 +93,44 @@ struct sr_film *sr_part_splats_film(struct sr_render_part *part); // what the pa
 struct sr_render_report *sr_part_report(struct sr_render_part *part);
 /* Keeps a pixel's sums of the samples of a block that the part has. Threads may call it for different pixels or blocks. */
 void sr_part_keep(struct sr_render_part *part, uint32_t block, uint32_t x, uint32_t y, const struct sr_block_tree *tree);
+
+/* ---- film_store.c ---- */
+
+struct sr_film *sr_film_twin(const struct sr_film *film, struct sr_error *error); // empty; NULL: no memory
+void sr_film_copy(struct sr_film *to, const struct sr_film *from); // to a twin
+
+/* ---- checkpoint.c ---- */
+
+/* A render that is kept. All zero but for what is given: nothing is. */
+struct sr_keeper {
+    const struct sr_render_keep *keep;    // NULL: nothing is kept
+    struct sr_film *films[2];             // all that the sums are in
+    uint32_t film_count;
+    uint32_t *counts[2];                  // NULL, or of each pixel: what an adaptive render has settled
+    uint32_t pass;                        // that is under way, or comes next
+    bool is_resumed, is_complete;         // after sr_keeper_resume; complete: films[0] is the picture
+    bool loses_file;                      // what is in the file is damaged: it does not become the previous generation
+    struct sr_film *copy;                 // of the film that is being rendered
+    char told[1024];                      // the last failure that has been told
+    struct sr_render_kept kept;
+};
+/* Fills the films and all others from the file, if that is wanted and it is there. */
+sr_status sr_keeper_resume(struct sr_keeper *k, struct sr_render_report *report, struct sr_error *error);
+/* Writes what there is while nobody else changes it. */
+void sr_keeper_write(struct sr_keeper *k, const struct sr_render_report *report, double share);
+/* What is kept of the render goes into the report. */
+void sr_keeper_end(struct sr_keeper *k, struct sr_render_report *report);
+
+/* A pass that is under way, for those who look at its film. */
+struct sr_keeper_view {
+    void *run;
+    struct sr_film *film;
+    void (*hold)(void *run); // no samples come in until it is let go
+    void (*let_go)(void *run);
+    double (*tell)(void *run, struct sr_render_report *report); // with the film: its counts and times; the share of the work that is done
+};
+struct sr_keeper_watch *sr_keeper_watch_begin(struct sr_keeper *k, const struct sr_keeper_view *view); // NULL: nothing is kept
+void sr_keeper_watch_end(struct sr_keeper_watch *watch);
 
 /* adaptive.c */
 sr_status sr_render_adaptive(const struct sr_render_job *job, struct sr_film **film, struct sr_render_report *report, struct sr_error *error);

@@ -15,13 +15,19 @@ struct run {
     struct sr_picture picture;
     uint32_t tile, tiles_x, tiles_y, blocks;
     uint32_t first_block, end_block; // that are to be made
+    struct sr_render_report base;  // of what came before this pass
+    uint32_t *had;                 // blocks of each pixel that a resumed render began with; NULL: a new one
     atomic_ullong next_unit;
     atomic_uint *tile_blocks;      // how many blocks of a tile are in the film
-    atomic_ullong rays, shadow_rays, vertices, paths, dropped;
+    atomic_ullong rays, shadow_rays, vertices, paths, dropped; // of what is in the film
     atomic_ullong units_done;
     atomic_bool cancelled;
     pthread_rwlock_t film_lock;    // stores share it, whoever looks at the whole film has it alone
-    pthread_mutex_t progress_lock; // guards the members below
+    pthread_mutex_t gate_lock;     // guards the gate: where units change the film long before they store, none may be under way
+    pthread_cond_t gate;
+    uint32_t active;               // workers that are past the gate
+    bool is_closed;
+    pthread_mutex_t progress_lock; // guards the members below; locks are taken in this order: gate, progress, film
     double last_progress_s;
     uint32_t first_dropped[4];     // x, y, replicate, sample
     bool has_dropped;
@@ -44,7 +50,6 @@ bool sr_render_is_earlier(const uint32_t a[4], const uint32_t b[4])
 
 static void remember_dropped(struct run *run, uint32_t x, uint32_t y, uint32_t replicate, uint32_t sample)
 {
-    atomic_fetch_add_explicit(&run->dropped, 1, memory_order_relaxed);
     pthread_mutex_lock(&run->progress_lock);
     // the first in picture order, so that the report does not depend on who was faster
     uint32_t now[4] = {x, y, replicate, sample};
@@ -109,17 +114,162 @@ static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, 
         if (job->with_aov)
             sr_film_block_add_first(b, &first);
         sr_block_tree_done(tree);
-        if ((i & 255) == 255 && is_cancelled(run))
+        if ((i & 15) == 15 && !splatting && is_cancelled(run)) // what has been splatted must stay
             break;
     }
     if (splatting)
-        sr_film_splat_paths(run->film, splatting->group, tree->next - tree->first); // also those of a block that is given up: they have splatted
+        sr_film_splat_paths(run->film, splatting->group, tree->next - tree->first);
     if (to - from == end - begin)
         sr_block_tree_fold(tree);
     return tree->next == to - begin;
 }
 
-static void tell_progress(struct run *run, double share)
+/* Blocks of a tile go in by their order; false: cancelled before. The one before is being made by a thread that does not wait for us. */
+static bool wait_for_turn(struct run *run, uint32_t tile, uint32_t block)
+{
+    while (atomic_load_explicit(&run->tile_blocks[tile], memory_order_acquire) != block) {
+        if (is_cancelled(run))
+            return false;
+        sched_yield();
+    }
+    return true;
+}
+
+/* Whether the pixel's block came from a checkpoint. */
+static bool is_there(const struct run *run, uint32_t x, uint32_t y, uint32_t block)
+{
+    return SR_UNLIKELY(run->had != NULL) && run->had[(size_t)y * run->film->width + x] > run->pass->blocks_before + block;
+}
+
+/* Cancelled, the pixels that are done come in; with splats that takes one pixel's block at most, without no time. */
+static bool do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratch, double *buckets, struct sr_block_tree *tree, struct sr_splatting *splatting, struct sr_worker *worker)
+{
+    uint32_t tiles = run->tiles_x * run->tiles_y, tile = (uint32_t)(unit % tiles), block = run->first_block + (uint32_t)(unit / tiles);
+    uint32_t x0 = tile % run->tiles_x * run->tile, y0 = tile / run->tiles_x * run->tile;
+    uint32_t x1 = x0 + run->tile < run->film->width ? x0 + run->tile : run->film->width;
+    uint32_t y1 = y0 + run->tile < run->film->height ? y0 + run->tile : run->film->height;
+    uint32_t left = (uint32_t)run->film->settings.x0, top = (uint32_t)run->film->settings.y0;
+    uint32_t width = x1 - x0, count = width * (y1 - y0), done = 0;
+    struct sr_render_part *part = run->pass->part;
+    uint64_t paths = 0, dropped = 0, rays = 0, shadow_rays = 0, vertices = 0;
+    if (splatting && !wait_for_turn(run, tile, block)) // once it has begun it comes in
+        return false;
+    for (; done < count; ++done) {
+        uint32_t x = x0 + done % width, y = y0 + done / width;
+        if (is_there(run, x, y, block))
+            continue;
+        if (is_cancelled(run) || !fill_block(run, left + x, top + y, block, tree, splatting, worker))
+            break;
+        paths += tree->next - tree->first;
+        for (uint32_t i = 0; i < tree->depth; ++i)
+            dropped += tree->nodes[i].dropped;
+        rays = worker->rays, shadow_rays = worker->shadow_rays, vertices = worker->vertices;
+        if (part) {
+            sr_part_keep(part, block, x, y, tree);
+            continue;
+        }
+        scratch[done] = tree->nodes[0];
+        if (buckets)
+            memcpy(buckets + (size_t)done * tree->bucket_count, tree->buckets, tree->bucket_count * sizeof *buckets);
+    }
+    if (!wait_for_turn(run, tile, block))
+        return false;
+    pthread_rwlock_rdlock(&run->film_lock);
+    for (uint32_t i = 0; !part && i < done; ++i) {
+        uint32_t x = x0 + i % width, y = y0 + i / width;
+        if (is_there(run, x, y, block))
+            continue;
+        if (buckets)
+            sr_film_store_buckets(run->film, x, y, buckets + (size_t)i * run->picture.response.buckets);
+        sr_film_store(run->film, x, y, &scratch[i]);
+    }
+    atomic_fetch_add_explicit(&run->paths, paths, memory_order_relaxed);
+    atomic_fetch_add_explicit(&run->dropped, dropped, memory_order_relaxed);
+    atomic_fetch_add_explicit(&run->rays, rays, memory_order_relaxed);
+    atomic_fetch_add_explicit(&run->shadow_rays, shadow_rays, memory_order_relaxed);
+    atomic_fetch_add_explicit(&run->vertices, vertices, memory_order_relaxed);
+    pthread_rwlock_unlock(&run->film_lock);
+    worker->rays = worker->shadow_rays = worker->vertices = 0;
+    if (done < count)
+        return false;
+    atomic_store_explicit(&run->tile_blocks[tile], block + 1, memory_order_release);
+    return true;
+}
+
+/* ---- what looks at the whole film while it grows ---- */
+
+static void pass_gate(struct run *run)
+{
+    pthread_mutex_lock(&run->gate_lock);
+    while (run->is_closed)
+        pthread_cond_wait(&run->gate, &run->gate_lock);
+    run->active += 1;
+    pthread_mutex_unlock(&run->gate_lock);
+}
+
+static void leave_gate(struct run *run)
+{
+    pthread_mutex_lock(&run->gate_lock);
+    if (--run->active == 0)
+        pthread_cond_broadcast(&run->gate);
+    pthread_mutex_unlock(&run->gate_lock);
+}
+
+static void hold(void *user)
+{
+    struct run *run = user;
+    pthread_mutex_lock(&run->gate_lock);
+    run->is_closed = true;
+    while (run->active > 0)
+        pthread_cond_wait(&run->gate, &run->gate_lock);
+    pthread_mutex_unlock(&run->gate_lock);
+    pthread_mutex_lock(&run->progress_lock);
+    pthread_rwlock_wrlock(&run->film_lock);
+}
+
+static void let_go(void *user)
+{
+    struct run *run = user;
+    pthread_rwlock_unlock(&run->film_lock);
+    pthread_mutex_unlock(&run->progress_lock);
+    pthread_mutex_lock(&run->gate_lock);
+    run->is_closed = false;
+    pthread_cond_broadcast(&run->gate);
+    pthread_mutex_unlock(&run->gate_lock);
+}
+
+static void add_to_report(const struct run *run, struct sr_render_report *report)
+{
+    *report = run->base;
+    report->paths += run->paths;
+    report->rays += run->rays;
+    report->shadow_rays += run->shadow_rays;
+    report->vertices += run->vertices;
+    report->dropped += run->dropped;
+    if (run->has_dropped) {
+        report->dropped_x = run->first_dropped[0], report->dropped_y = run->first_dropped[1];
+        report->dropped_replicate = run->first_dropped[2], report->dropped_sample = run->first_dropped[3];
+    }
+    report->render_s = sr_clock_s() - run->pass->start_s;
+    report->is_complete = !run->cancelled;
+}
+
+/* Share of the whole work that is done [1]. */
+static double share_of(const struct run *run, uint64_t units_done)
+{
+    const struct sr_render_pass *pass = run->pass;
+    double share = (double)units_done / ((double)run->tiles_x * run->tiles_y * (run->end_block - run->first_block));
+    return pass->share_begin + share * (pass->share_end - pass->share_begin);
+}
+
+static double tell(void *user, struct sr_render_report *report)
+{
+    struct run *run = user;
+    add_to_report(run, report);
+    return share_of(run, run->units_done);
+}
+
+static void tell_progress(struct run *run, uint64_t units_done)
 {
     const struct sr_render_job *job = run->job;
     if (!job->progress || pthread_mutex_trylock(&run->progress_lock) != 0)
@@ -127,63 +277,16 @@ static void tell_progress(struct run *run, double share)
     double now = sr_clock_s();
     if (now - run->last_progress_s >= job->progress_interval_s) {
         run->last_progress_s = now;
-        const struct sr_render_pass *pass = run->pass;
-        double elapsed = now - pass->start_s;
-        share = pass->share_begin + share * (pass->share_end - pass->share_begin);
+        double elapsed = now - run->pass->start_s, share = share_of(run, units_done);
         pthread_rwlock_wrlock(&run->film_lock);
         struct sr_render_progress p = {
             .share = share, .elapsed_s = elapsed, .left_s = share > 0 ? elapsed * (1 - share) / share : NAN,
-            .rays = atomic_load(&run->rays) + atomic_load(&run->shadow_rays), .film = run->film,
+            .rays = run->base.rays + run->base.shadow_rays + atomic_load(&run->rays) + atomic_load(&run->shadow_rays), .film = run->film,
         };
         job->progress(job->user, &p);
         pthread_rwlock_unlock(&run->film_lock);
     }
     pthread_mutex_unlock(&run->progress_lock);
-}
-
-static bool do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratch, double *buckets, struct sr_block_tree *tree, struct sr_splatting *splatting, struct sr_worker *worker)
-{
-    uint32_t tiles = run->tiles_x * run->tiles_y, tile = (uint32_t)(unit % tiles), block = run->first_block + (uint32_t)(unit / tiles);
-    uint32_t x0 = tile % run->tiles_x * run->tile, y0 = tile / run->tiles_x * run->tile;
-    uint32_t x1 = x0 + run->tile < run->film->width ? x0 + run->tile : run->film->width;
-    uint32_t y1 = y0 + run->tile < run->film->height ? y0 + run->tile : run->film->height;
-    uint32_t left = (uint32_t)run->film->settings.x0, top = (uint32_t)run->film->settings.y0, done = 0;
-    uint64_t paths = 0;
-    for (uint32_t y = y0; y < y1; ++y)
-        for (uint32_t x = x0; x < x1; ++x, ++done) {
-            if (is_cancelled(run) || !fill_block(run, left + x, top + y, block, tree, splatting, worker))
-                return false;
-            paths += tree->next - tree->first;
-            if (run->pass->part) {
-                sr_part_keep(run->pass->part, block, x, y, tree);
-                continue;
-            }
-            scratch[done] = tree->nodes[0];
-            if (buckets)
-                memcpy(buckets + (size_t)done * tree->bucket_count, tree->buckets, tree->bucket_count * sizeof *buckets);
-        }
-    if (run->pass->part) {
-        atomic_fetch_add_explicit(&run->paths, paths, memory_order_relaxed);
-        return true;
-    }
-    // blocks of a tile go in by their order; the one before is being made by a thread that does not wait for us
-    while (atomic_load_explicit(&run->tile_blocks[tile], memory_order_acquire) != block) {
-        if (is_cancelled(run))
-            return false;
-        sched_yield();
-    }
-    pthread_rwlock_rdlock(&run->film_lock);
-    uint32_t i = 0;
-    for (uint32_t y = y0; y < y1; ++y)
-        for (uint32_t x = x0; x < x1; ++x) {
-            if (buckets)
-                sr_film_store_buckets(run->film, x, y, buckets + (size_t)i * run->picture.response.buckets);
-            sr_film_store(run->film, x, y, &scratch[i++]);
-        }
-    pthread_rwlock_unlock(&run->film_lock);
-    atomic_store_explicit(&run->tile_blocks[tile], block + 1, memory_order_release);
-    atomic_fetch_add_explicit(&run->paths, paths, memory_order_relaxed);
-    return true;
 }
 
 static void work(void *context, int thread)
@@ -198,31 +301,16 @@ static void work(void *context, int thread)
     bool splats = run->film->splats != NULL;
     struct sr_worker worker = {.log = thread == 0 ? run->job->log : NULL, .target = splats ? &splatting.target : NULL, .shared = run->shared};
     for (;;) {
+        if (splats)
+            pass_gate(run);
         uint64_t unit = atomic_fetch_add_explicit(&run->next_unit, 1, memory_order_relaxed);
-        if (unit >= units || is_cancelled(run) || !do_unit(run, unit, scratch, buckets, tree, splats ? &splatting : NULL, &worker))
+        bool is_done = unit < units && !is_cancelled(run) && do_unit(run, unit, scratch, buckets, tree, splats ? &splatting : NULL, &worker);
+        if (splats)
+            leave_gate(run);
+        if (!is_done)
             break;
-        uint64_t done = atomic_fetch_add_explicit(&run->units_done, 1, memory_order_relaxed) + 1;
-        atomic_fetch_add_explicit(&run->rays, worker.rays, memory_order_relaxed);
-        atomic_fetch_add_explicit(&run->shadow_rays, worker.shadow_rays, memory_order_relaxed);
-        atomic_fetch_add_explicit(&run->vertices, worker.vertices, memory_order_relaxed);
-        worker.rays = worker.shadow_rays = worker.vertices = 0;
-        tell_progress(run, (double)done / (double)units);
+        tell_progress(run, atomic_fetch_add_explicit(&run->units_done, 1, memory_order_relaxed) + 1);
     }
-}
-
-static void add_to_report(const struct run *run, struct sr_render_report *report)
-{
-    if (report->dropped == 0 && run->dropped > 0) {
-        report->dropped_x = run->first_dropped[0], report->dropped_y = run->first_dropped[1];
-        report->dropped_replicate = run->first_dropped[2], report->dropped_sample = run->first_dropped[3];
-    }
-    report->paths += run->paths;
-    report->rays += run->rays;
-    report->shadow_rays += run->shadow_rays;
-    report->vertices += run->vertices;
-    report->dropped += run->dropped + (run->film->splats ? run->film->splats->dropped : 0);
-    report->render_s = sr_clock_s() - run->pass->start_s;
-    report->is_complete = !run->cancelled;
 }
 
 /* Which block the sample of this number is in. */
@@ -236,7 +324,7 @@ static uint32_t block_of(uint32_t spp, uint32_t blocks, uint32_t sample)
 
 sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render_pass *pass, struct sr_render_report *report, struct sr_error *error)
 {
-    struct run run = {.job = job, .pass = pass, .film = pass->film, .tile = job->tile > 0 ? (uint32_t)job->tile : DEFAULT_TILE, .blocks = pass->blocks, .end_block = pass->blocks};
+    struct run run = {.job = job, .pass = pass, .film = pass->film, .base = *report, .tile = job->tile > 0 ? (uint32_t)job->tile : DEFAULT_TILE, .blocks = pass->blocks, .end_block = pass->blocks};
     if (pass->part) {
         run.first_block = block_of(job->spp, pass->blocks, pass->range.begin);
         run.end_block = block_of(job->spp, pass->blocks, pass->range.end - 1) + 1;
@@ -251,14 +339,25 @@ sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render
     run.trees = sr_arena_alloc(&arena, (size_t)threads * sizeof *run.trees);
     uint32_t buckets = run.picture.response.buckets;
     run.buckets = buckets ? sr_arena_alloc(&arena, (size_t)threads * run.tile * run.tile * buckets * sizeof *run.buckets) : NULL;
+    bool is_resumed = pass->keeper && pass->keeper->is_resumed;
+    size_t pixels = (size_t)pass->film->width * pass->film->height;
+    run.had = is_resumed ? sr_arena_alloc(&arena, pixels * sizeof *run.had) : NULL;
     double *tree_buckets = buckets ? sr_arena_alloc(&arena, (size_t)threads * SR_BLOCK_TREE_NODES * buckets * sizeof *tree_buckets) : NULL;
-    if (!run.tile_blocks || !run.scratch || !run.trees || (buckets && (!run.buckets || !tree_buckets))) {
+    if (!run.tile_blocks || !run.scratch || !run.trees || (is_resumed && !run.had) || (buckets && (!run.buckets || !tree_buckets))) {
         sr_arena_free(&arena);
         return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for %d workers", threads);
     }
     for (int i = 0; buckets && i < threads; ++i) {
         run.trees[i].bucket_count = buckets;
         run.trees[i].buckets = tree_buckets + (size_t)i * SR_BLOCK_TREE_NODES * buckets;
+    }
+    for (size_t i = 0; run.had && i < pixels; ++i)
+        run.had[i] = pass->film->pixels[i].blocks;
+    for (uint32_t i = 0; pass->part && i < run.tiles_x * run.tiles_y; ++i)
+        run.tile_blocks[i] = run.first_block;
+    if (report->dropped) {
+        run.has_dropped = true;
+        memcpy(run.first_dropped, (uint32_t[4]){report->dropped_x, report->dropped_y, report->dropped_replicate, report->dropped_sample}, sizeof run.first_dropped);
     }
     const struct sr_integrator *integrator = &job->integrator;
     struct sr_picture_plan plan = {.pixels = (uint64_t)pass->film->width * pass->film->height, .per_replicate = pass->per_replicate, .seed = job->seed,
@@ -269,11 +368,20 @@ sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render
     }
     pthread_rwlock_init(&run.film_lock, NULL);
     pthread_mutex_init(&run.progress_lock, NULL);
+    pthread_mutex_init(&run.gate_lock, NULL);
+    pthread_cond_init(&run.gate, NULL);
     run.last_progress_s = sr_clock_s();
+    struct sr_keeper_watch *watch =
+        sr_keeper_watch_begin(pass->keeper, &(struct sr_keeper_view){.run = &run, .film = pass->film, .hold = hold, .let_go = let_go, .tell = tell});
     sr_parallel(threads, work, &run);
+    sr_keeper_watch_end(watch);
+    pthread_cond_destroy(&run.gate);
+    pthread_mutex_destroy(&run.gate_lock);
     pthread_rwlock_destroy(&run.film_lock);
     pthread_mutex_destroy(&run.progress_lock);
     add_to_report(&run, report);
+    if (run.cancelled && pass->keeper)
+        sr_keeper_write(pass->keeper, report, share_of(&run, run.units_done));
     if (run.shared)
         integrator->model->end(run.shared);
     sr_arena_free(&arena);
@@ -312,8 +420,13 @@ static struct sr_render_pass pass_of(const struct sr_render_job *job)
 {
     // where samples of a number share something over the whole picture, all pixels take them one after the other
     uint32_t blocks = job->spp < ORDINARY_BLOCKS || job->integrator.model->begin ? job->spp : ORDINARY_BLOCKS;
-    return (struct sr_render_pass){.start_s = sr_clock_s(), .share_end = 1, .blocks = job->replicates ? job->replicates : blocks,
+    return (struct sr_render_pass){.share_end = 1, .blocks = job->replicates ? job->replicates : blocks,
                                    .per_replicate = job->replicates ? job->spp / job->replicates : 0};
+}
+
+static void count_lost_splats(const struct sr_film *film, struct sr_render_report *report)
+{
+    report->dropped += film->splats ? film->splats->dropped : 0;
 }
 
 sr_status sr_render(const struct sr_render_job *wanted, struct sr_film **film, struct sr_render_report *report, struct sr_error *error)
@@ -329,10 +442,17 @@ sr_status sr_render(const struct sr_render_job *wanted, struct sr_film **film, s
     if (sr_film_create(&job->film, job->with_aov, film, error) != SR_OK)
         return error->status;
     struct sr_render_pass pass = pass_of(job);
+    struct sr_keeper keeper = {.keep = job->keep, .films = {*film}, .film_count = 1};
     pass.film = *film;
+    pass.keeper = &keeper;
     sr_status status = has_splats(job) ? sr_film_add_splats(*film, pass.blocks, error) : SR_OK;
     if (status == SR_OK)
+        status = sr_keeper_resume(&keeper, report, error);
+    pass.start_s = sr_clock_s() - report->render_s;
+    if (status == SR_OK && !keeper.is_complete)
         status = sr_render_pass(job, &pass, report, error);
+    sr_keeper_end(&keeper, report);
+    count_lost_splats(*film, report);
     if (status != SR_OK && status != SR_CANCELLED) {
         sr_film_destroy(*film);
         *film = NULL;
@@ -362,9 +482,11 @@ sr_status sr_render_samples(const struct sr_render_job *wanted, struct sr_render
     if (status != SR_OK)
         return status;
     pass.film = sr_part_splats_film(pass.part);
+    pass.start_s = sr_clock_s();
     status = has_splats(job) ? sr_film_add_splats(pass.film, pass.blocks, error) : SR_OK;
     if (status == SR_OK)
         status = sr_render_pass(job, &pass, sr_part_report(pass.part), error);
+    count_lost_splats(pass.film, sr_part_report(pass.part));
     if (status == SR_OK)
         *part = pass.part;
     else

@@ -35,6 +35,15 @@ struct sr_render_adaptive {
     // without either, spp samples per pixel are taken on average; with one, at most as many
 };
 
+/* Sums on disk, so that a render that ends before its time can go on (docs/decisions/0019-checkpoints.md). */
+struct sr_render_keep {
+    const char *path;     // the file; the generation before it has a ~ at its end
+    const char *identity; // of this render: sr_render_identity
+    double interval_s;    // between checkpoints
+    bool resumes;         // goes on from the file if there is one; refuses one that belongs to another render
+    struct sr_log *log;   // told what does not work while the render goes on
+};
+
 struct sr_render_job {
     const struct sr_scene *scene;
     struct sr_sensor sensor;
@@ -52,6 +61,7 @@ struct sr_render_job {
     int threads;         // 0: all processors
     int tile;            // [pixel] side of a tile; 0: 16
     struct sr_ray_log *log; // NULL, or where the first thread's rays are recorded
+    const struct sr_render_keep *keep; // NULL: nothing is kept
 
     void (*progress)(void *user, const struct sr_render_progress *p); // NULL: nobody asks; called by one thread at a time
     double progress_interval_s;
@@ -65,9 +75,16 @@ struct sr_render_report {
     uint64_t dropped;                        // samples that were not finite
     uint32_t dropped_x, dropped_y, dropped_sample, dropped_replicate; // the first of them, for replay
     bool is_complete;
+    struct sr_render_kept {
+        uint32_t written, failed; // checkpoints
+        bool is_behind;           // the last one that was tried is not on disk
+        double stall_s, write_s;  // workers waited, the writer worked
+        double resumed_share;     // [1] of the work that was there already; 0: a new render
+    } kept;
 };
 
-/* Renders into a new film. Cancelled: SR_CANCELLED, and the film holds what there is. */
+/* Renders into a new film. Cancelled: SR_CANCELLED, and the film holds what there is. Times and counts of a render that has been
+ * resumed are those of all its runs. */
 sr_status sr_render(const struct sr_render_job *job, struct sr_film **film, struct sr_render_report *report, struct sr_error *error);
 
 /* ---- identity.c: what makes the bytes, as lines "key value" ---- */
@@ -79,6 +96,23 @@ struct sr_render_difference {
 };
 /* The first key whose values are not the same; false: there is none. */
 bool sr_render_identity_differs(const char *theirs, const char *ours, struct sr_render_difference *d);
+
+/* ---- checkpoint.c ---- */
+
+/* Keeps a render whose work is done, where its picture could not be written. */
+sr_status sr_render_checkpoint(const struct sr_render_job *job, const struct sr_film *film, struct sr_render_report *report, struct sr_error *error);
+/* A picture that has been written needs no checkpoint any more: removes all generations. */
+void sr_render_forget(const struct sr_render_keep *keep);
+/* What a checkpoint says of its render; false: it is none, or an older program's. */
+struct sr_render_progress_kept {
+    const char *identity;
+    double share;     // [1]
+    double render_s;
+    uint64_t paths, rays, shadow_rays, dropped;
+    int64_t time_s;   // when it was written, since 1970
+    bool is_complete;
+};
+bool sr_render_checkpoint_tells(const struct sr_store_in *in, struct sr_render_progress_kept *out);
 
 /* ---- film_store.c: a film in a store ---- */
 

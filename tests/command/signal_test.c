@@ -14,11 +14,18 @@ static void nap(double s)
     nanosleep(&t, NULL);
 }
 
+static const char *in_folder(const char *name)
+{
+    static char path[512];
+    snprintf(path, sizeof path, "%s/%s", test_folder(), name);
+    return path;
+}
+
 /* Sends the signal as soon as the file is there; kills the render and fails when it does not come. */
 static void send_when_there(pid_t pid, int number, const char *file)
 {
     double start_s = sr_clock_s();
-    while (count_files(file) == 0) {
+    while (!sr_file_exists(in_folder(file))) {
         if (sr_clock_s() - start_s > 60) {
             kill(pid, SIGKILL);
             test_fail(__FILE__, __LINE__, "%s is not there after a minute", file);
@@ -43,6 +50,7 @@ static void expect_partial(const char *name)
 static void expect_interrupted(int number, int code)
 {
     remove_file("stopped.exr");
+    remove_file("stopped.exr.srk");
     pid_t pid = start(STEADY "stopped.exr");
     send_when_there(pid, number, "stopped.exr");
     double sent_s = sr_clock_s();
@@ -50,6 +58,8 @@ static void expect_interrupted(int number, int code)
     EXPECT_EQUAL_INT(s->code, code);
     EXPECT(sr_clock_s() - sent_s < 20);
     EXPECT_SAYS(s->err, "interrupted; what there was has been written");
+    EXPECT_SAYS(s->err, "--resume goes on from");
+    EXPECT(sr_file_exists(in_folder("stopped.exr.srk")));
     expect_partial("stopped.exr");
 }
 
@@ -73,13 +83,6 @@ TEST(signal_interrupt_is_told_in_the_json)
     json_t *j = json_of(s);
     EXPECT(json_is_false(json_object_get(j, "complete")));
     json_decref(j);
-}
-
-static const char *in_folder(const char *name)
-{
-    static char path[512];
-    snprintf(path, sizeof path, "%s/%s", test_folder(), name);
-    return path;
 }
 
 /* Starts a render and waits for its note about the scene, which comes while it reads, before it renders. */

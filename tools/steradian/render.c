@@ -36,6 +36,11 @@ static const char help[] =
     "                         makes the picture of all parts (an image beside it shows this part alone)\n"
     "      --part K/N         the same, with the K-th (1 to N) of N even ranges: for job arrays\n"
     "      --write-partial S  write the output every S seconds while rendering\n"
+    "      --checkpoint FILE  keep the render in this file while it goes on (default: the first output's name with .srk)\n"
+    "      --checkpoint-interval T  so often: 60s (default), 5min, 1h; the file goes when the picture has been written\n"
+    "      --no-checkpoint    keep nothing\n"
+    "      --resume           go on from the checkpoint, to the same bytes; without one begin anew; refuses another scene's,\n"
+    "                         other settings' or another program's\n"
     "      --tile N           side of a work tile [pixel] (default: 16 or less; the bytes do not depend on it)\n"
     "      --disable-pixel-jitter, --disable-wavelength-jitter\n"
     "      --camera NAME      (glTF) the camera of this name, or number from 1; default: the first\n"
@@ -48,10 +53,10 @@ static const char help[] =
     "      --stamp            write date and render time into the EXR, whose bytes then differ from run to run\n"
     "  -q, --quiet            no progress, no summary; warnings and errors stay\n"
     "\n"
-    "While it renders: Ctrl-C (SIGINT) and SIGTERM write what there is and end with 130 or 143, a second one ends at\n"
-    "once; SIGUSR1 writes what there is and goes on (kill -USR1 PID).\n"
-    "Exit codes: 0 done, 1 the error of --error was missed, 2 usage, 3 a bad scene, 4 the output cannot be written or memory is short, 130/143 "
-    "interrupted.\n"
+    "While it renders: Ctrl-C (SIGINT) and SIGTERM write a checkpoint and what there is, and end with 130 or 143, a second\n"
+    "one ends at once; SIGUSR1 writes what there is and goes on (kill -USR1 PID).\n"
+    "Exit codes: 0 done, 1 the error of --error was missed, 2 usage, 3 a bad scene, 4 the output, or a checkpoint that was asked "
+    "for\nor is needed, cannot be written, or memory is short, 130/143 interrupted.\n"
     "\n"
     "Examples:\n"
     "  steradian render scenes/cornell-box.pbrt -o cornell.exr -o cornell.png\n"
@@ -139,25 +144,32 @@ void render_print_replay(const struct rendering *r, const struct sr_render_repor
     fputc('\n', stderr);
 }
 
-static int finish(struct rendering *r, const struct sr_film *film, const struct sr_render_report *report)
+static int finish(struct rendering *r, struct render_keeping *keeping, const struct sr_film *film, struct sr_render_report *report)
 {
     const struct render_arguments *a = r->arguments;
     struct sr_error error = {0};
-    if (render_write_outputs(r, film, report->render_s, report->is_complete, &error) != SR_OK)
-        return command_fail("render", &error);
+    bool is_written = render_write_outputs(r, film, report->render_s, report->is_complete, &error) == SR_OK;
+    if (!is_written)
+        command_fail("render", &error);
+    if (!report->is_complete && is_written)
+        fprintf(stderr, "steradian render: interrupted; what there was has been written\n");
+    int code = render_keep_end(keeping, r->job, film, report, is_written);
+    if (!is_written)
+        return SR_ERROR_RESOURCE;
     if (report->dropped)
         render_print_replay(r, report);
     if (!a->quiet)
         render_print_summary(r, film, report);
     json_t *meters = report->is_complete ? render_measure(a, r->job) : json_array();
-    int code = 0;
+    int print_code = 0;
     if (a->json)
-        code = render_print_json(r, film, report, meters);
+        print_code = render_print_json(r, film, report, meters);
     else
         json_decref(meters);
+    if (code)
+        return code;
     if (report->is_complete)
-        return code ? code : render_missed_target(r, film) ? SR_ERROR_CHECK : 0;
-    fprintf(stderr, "steradian render: interrupted; what there was has been written\n");
+        return print_code ? print_code : render_missed_target(r, film) ? SR_ERROR_CHECK : 0;
     return render_interrupt_exit();
 }
 
@@ -187,18 +199,22 @@ static int render_scene(const struct render_arguments *a, const struct sr_import
         return code;
     if (a->has_range)
         return render_part(&r, identity);
-    if (render_check_memory(&job, NULL, &error) != SR_OK)
-        return command_fail("render", &error);
-    render_catch_interrupts();
-    struct sr_film *film;
-    struct sr_render_report report;
-    sr_render(&job, &film, &report, &error);
-    if (r.on_terminal)
-        fputs("\r\033[K", stderr);
-    if (!film)
-        return command_fail("render", &error);
-    code = finish(&r, film, &report);
-    sr_film_destroy(film);
+    struct render_keeping keeping;
+    code = render_keep_begin(a, scene, identity, &job, &keeping);
+    r.keep = job.keep;
+    if (!code && render_check_memory(&job, NULL, &error) != SR_OK)
+        code = command_fail("render", &error);
+    if (!code) {
+        render_defer_interrupts();
+        struct sr_film *film;
+        struct sr_render_report report;
+        sr_render(&job, &film, &report, &error);
+        if (r.on_terminal)
+            fputs("\r\033[K", stderr);
+        code = film ? finish(&r, &keeping, film, &report) : command_fail("render", &error);
+        sr_film_destroy(film);
+    }
+    sr_arena_free(&keeping.arena);
     return code;
 }
 
@@ -207,6 +223,7 @@ static int run(int argc, char **argv)
     if (command_tells_estimators(argc, argv))
         return 0;
     render_catch_requests();
+    render_catch_interrupts();
     struct render_arguments a;
     int code = render_parse(argc, argv, &a);
     if (!code && a.output_count && !a.has_pixel)

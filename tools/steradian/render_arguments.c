@@ -38,6 +38,10 @@ enum {
     OPT_VARIANT,
     OPT_RANGE,
     OPT_PART,
+    OPT_CHECKPOINT,
+    OPT_CHECKPOINT_INTERVAL,
+    OPT_NO_CHECKPOINT,
+    OPT_RESUME,
 };
 
 static const struct option long_options[] = {
@@ -58,6 +62,10 @@ static const struct option long_options[] = {
     {"aov", no_argument, NULL, OPT_AOV},
     {"no-aov", no_argument, NULL, OPT_NO_AOV},
     {"write-partial", required_argument, NULL, OPT_PARTIAL},
+    {"checkpoint", required_argument, NULL, OPT_CHECKPOINT},
+    {"checkpoint-interval", required_argument, NULL, OPT_CHECKPOINT_INTERVAL},
+    {"no-checkpoint", no_argument, NULL, OPT_NO_CHECKPOINT},
+    {"resume", no_argument, NULL, OPT_RESUME},
     {"tile", required_argument, NULL, OPT_TILE},
     {"disable-pixel-jitter", no_argument, NULL, OPT_NO_PIXEL_JITTER},
     {"disable-wavelength-jitter", no_argument, NULL, OPT_NO_LAMBDA_JITTER},
@@ -158,6 +166,8 @@ static bool take_numbers(struct render_arguments *a, int option, const char *nam
     case OPT_TIME:
         a->adaptive.is_on = true;
         return command_parse_time(c, name, text, &a->adaptive.time_s);
+    case OPT_CHECKPOINT_INTERVAL:
+        return command_parse_time(c, name, text, &a->checkpoint_s);
     case OPT_UNITS:
         return command_parse_units(c, text, &a->import.units);
     case OPT_EXPOSURE:
@@ -170,7 +180,7 @@ static bool take_numbers(struct render_arguments *a, int option, const char *nam
 
 int render_parse(int argc, char **argv, struct render_arguments *a)
 {
-    *a = (struct render_arguments){.aov = true, .lambda = {(double)SR_LAMBDA_MIN, (double)SR_LAMBDA_MAX}};
+    *a = (struct render_arguments){.aov = true, .checkpoint_s = 60, .lambda = {(double)SR_LAMBDA_MIN, (double)SR_LAMBDA_MAX}};
     int option, index = 0;
     while ((option = command_next_option(argc, argv, ":o:q", long_options, &index)) != -1) {
         switch (option) {
@@ -217,6 +227,15 @@ int render_parse(int argc, char **argv, struct render_arguments *a)
             if (option == OPT_RANGE ? !render_parse_range(optarg, &a->range) : !render_parse_part(optarg, a->part))
                 return SR_ERROR_USAGE;
             break;
+        case OPT_CHECKPOINT:
+            a->checkpoint = optarg;
+            break;
+        case OPT_NO_CHECKPOINT:
+            a->no_checkpoint = true;
+            break;
+        case OPT_RESUME:
+            a->resume = true;
+            break;
         case OPT_QUICK:
             a->import.quick = true;
             break;
@@ -245,6 +264,8 @@ int render_parse(int argc, char **argv, struct render_arguments *a)
                              argc - optind);
     if (a->adaptive.is_on && a->replicates)
         return command_usage(&command_render, "--replicates does not go with --adaptive, --error or --time: they have 16 of their own");
+    if (a->no_checkpoint && (a->checkpoint || a->resume))
+        return command_usage(&command_render, "--no-checkpoint does not go with --checkpoint or --resume");
     if (a->has_sample && !a->has_pixel)
         return command_usage(&command_render, "--sample needs --pixel: which pixel's sample?");
     a->scene = argv[optind];

@@ -22,6 +22,9 @@ struct render_arguments {
     bool has_range;                // some of the samples only: a part of the picture
     struct sr_render_range range;
     uint64_t part[2];              // instead, number K of N even ranges; N = 0: not asked for
+    const char *checkpoint; // NULL: beside the first output
+    double checkpoint_s;    // between checkpoints
+    bool no_checkpoint, resume;
     double meters[RENDER_MAX_METERS][6]; // [m] point, [1] normal
     int meter_count;
 };
@@ -33,6 +36,7 @@ struct rendering {
     const struct sr_render_job *job;
     const char *about;     // of picture_about
     struct sr_render_range range; // of a part
+    const struct sr_render_keep *keep; // NULL: none
     double last_partial_s; // [s]
     bool on_terminal;
 };
@@ -72,11 +76,28 @@ sr_status render_write_outputs(const struct rendering *r, const struct sr_film *
 
 /* SIGUSR1 asks for a partial picture; from the first moment, so that it never kills. */
 void render_catch_requests(void);
-/* SIGINT and SIGTERM end the render, which then writes what there is; a second one ends the program at once. */
+/* SIGINT and SIGTERM end the program at once while it loads; */
 void render_catch_interrupts(void);
+/* from now on they end the render, which then writes what there is, and a second one ends the program at once. */
+void render_defer_interrupts(void);
 extern atomic_bool render_interrupted;
 int render_interrupt_exit(void); // 130 or 143
 void render_on_progress(void *user, const struct sr_render_progress *p);
+
+/* ---- render_keep.c ---- */
+
+/* A render's checkpoint. */
+struct render_keeping {
+    struct sr_arena arena;
+    struct sr_render_keep keep; // path NULL: none
+    struct sr_log log;
+    bool is_asked_for;
+};
+/* Where and how the job is kept; 0, or the exit code of a failure that has been told. */
+int render_keep_begin(const struct render_arguments *a, const struct sr_import_result *scene, const char *identity, struct sr_render_job *job,
+                      struct render_keeping *k);
+/* After the outputs: is_written, whether they could be. Removes what is not needed any more, tells what is left; the exit code. */
+int render_keep_end(struct render_keeping *k, const struct sr_render_job *job, const struct sr_film *film, struct sr_render_report *report, bool is_written);
 
 /* ---- render_summary.c ---- */
 

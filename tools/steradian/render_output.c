@@ -49,7 +49,8 @@ static double pixel_B(const struct sr_render_job *job)
     uint32_t groups = job->replicates ? job->replicates : 4; // of splats
     double splats_B = job->integrator.model->splats ? (double)sr_film_splats_B(groups < SR_SPLAT_GROUPS ? groups : SR_SPLAT_GROUPS) : 0;
     double adaptive_B = job->adaptive.is_on ? sizeof(struct sr_film_pixel) + (job->with_aov ? sizeof(struct sr_film_aov) : 0) + 32 : 0;
-    return splats_B + adaptive_B + (double)sizeof(struct sr_film_pixel) + (job->with_aov ? (double)sizeof(struct sr_film_aov) : 0) +
+    double copy_B = job->keep ? splats_B + (double)sizeof(struct sr_film_pixel) + (job->with_aov ? (double)sizeof(struct sr_film_aov) : 0) : 0;
+    return splats_B + adaptive_B + copy_B + (double)sizeof(struct sr_film_pixel) + (job->with_aov ? (double)sizeof(struct sr_film_aov) : 0) +
            2 * channels * sizeof(float);
 }
 
@@ -83,12 +84,12 @@ sr_status render_write_outputs(const struct rendering *r, const struct sr_film *
 
 atomic_bool render_interrupted;
 static atomic_int interrupt_signal;
-static atomic_bool is_partial_wanted;
+static atomic_bool is_partial_wanted, is_deferred;
 
 static void on_interrupt(int number)
 {
-    if (atomic_exchange(&interrupt_signal, number))
-        _exit(128 + number); // asked twice: at once
+    if (atomic_exchange(&interrupt_signal, number) || !atomic_load(&is_deferred))
+        _exit(128 + number); // asked twice, or nothing is there yet: at once
     atomic_store(&render_interrupted, true);
 }
 
@@ -114,6 +115,11 @@ void render_catch_interrupts(void)
 {
     catch (SIGINT, on_interrupt);
     catch (SIGTERM, on_interrupt);
+}
+
+void render_defer_interrupts(void)
+{
+    atomic_store(&is_deferred, true);
 }
 
 int render_interrupt_exit(void)

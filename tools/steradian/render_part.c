@@ -106,7 +106,7 @@ int render_part(struct rendering *r, const char *identity)
         return code;
     if (render_check_memory(r->job, &r->range, &error) != SR_OK)
         return command_fail("render", &error);
-    render_catch_interrupts();
+    render_defer_interrupts();
     struct sr_render_part *part;
     sr_status status = sr_render_samples(r->job, r->range, &part, &error);
     if (r->on_terminal)

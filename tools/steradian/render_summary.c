@@ -131,5 +131,10 @@ int render_print_json(const struct rendering *r, const struct sr_film *film, con
         (json_int_t)report->shadow_rays, "vertices", (json_int_t)report->vertices, "dropped_samples",
         (json_int_t)report->dropped, "primitives_without_area", (json_int_t)counts.degenerate, "doubtful_pixels",
         (json_int_t)sr_film_doubtful_pixels(film), "irradiance", meters, "relative_error", command_json_number(relative_error(r, film)));
+    const struct sr_render_kept *kept = &report->kept;
+    if (j && r->keep)
+        json_object_set_new(j, "checkpoint", json_pack("{s:o, s:i, s:i, s:f, s:f, s:f}", "file", command_json_text(r->keep->path), "written", (int)kept->written,
+                                                       "failed", (int)kept->failed, "stall_s", kept->stall_s, "write_s", kept->write_s, "resumed_share",
+                                                       kept->resumed_share));
     return command_print_json("render", j);
 }
