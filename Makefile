@@ -6,7 +6,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 OUT ?= out
 SECONDS ?= 60
 
-.PHONY: all render test test-asan test-tsan fuzz mutants validate bench check format format-reference install clean packages
+.PHONY: all render test test-asan test-tsan fuzz soak mutants validate bench check format format-reference install clean packages
 
 all: packages
 	@cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release >$(BUILD).log 2>&1 || { cat $(BUILD).log; exit 1; }
@@ -41,6 +41,10 @@ fuzz: packages
 	  $$(command -v clang >/dev/null && echo -DCMAKE_C_COMPILER=clang) >/dev/null
 	@cmake --build build-fuzz --parallel $(JOBS) --target fuzz_programs >build-fuzz.log 2>&1 || { cat build-fuzz.log; exit 1; }
 	scripts/fuzz build-fuzz/fuzz $(SECONDS)
+
+# what takes long to go wrong: renders killed, interrupted and starved of disk, and resumed (docs/guide/long-renders.md)
+soak: all
+	python3 tests/soak/resume.py $(BUILD)/steradian --fault $(BUILD)/tests/libsoak_fault.so
 
 # scenes whose answers are known, to a relative standard uncertainty of GOAL
 GOAL ?= 0.0125%

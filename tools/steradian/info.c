@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* steradian info: what is in a file, without rendering it: pictures here, scenes in info_scene.c, luminaires in
- * info_luminaire.c. */
+ * info_luminaire.c, checkpoints in info_store.c. */
 #include "info.h"
+
+#include "store/store.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -11,7 +13,8 @@ static const char help[] =
     "\n"
     "Tells what a picture (EXR, PNG, JPEG, PFM, HDR, TGA) or a scene (.pbrt, .pbrt.gz, '-': a scene from standard\n"
     "input) contains, without rendering: sizes, channels with their units, attributes; sensor, film, lights, shapes,\n"
-    "bounds, memory. Of a luminaire (.ies, .ldt): flux, peak, beam and field angles, efficacy, size, its words.\n"
+    "bounds, memory. Of a luminaire (.ies, .ldt): flux, peak, beam and field angles, efficacy, size, its words. Of a\n"
+    "checkpoint (.srk) or a part of a picture (.srp): of which render it is, how far it has come, whether it is whole.\n"
     "\n"
     "      --json             the same as JSON on standard output\n"
     "  -o, --outfile FILE     writes a luminaire in the format of the ending, .ies (LM-63-2002) or .ldt\n"
@@ -153,6 +156,8 @@ static int run(int argc, char **argv)
         return info_scene(&a);
     if (sr_path_has_ending(a.path, ".ies") || sr_path_has_ending(a.path, ".ldt"))
         return info_luminaire(&a);
+    if (sr_store_is_store(a.path))
+        return info_store(&a);
 
     if (a.plot || a.outfile)
         return command_usage(&command_info, "--plot and -o are for luminaires, .ies or .ldt");

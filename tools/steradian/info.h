@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What the two halves of steradian info share. */
+/* What the parts of steradian info share. */
 #ifndef SR_TOOLS_INFO_H
 #define SR_TOOLS_INFO_H
 
@@ -16,5 +16,7 @@ struct info_arguments {
 int info_scene(const struct info_arguments *arguments);
 /* The same for a luminaire, IES or EULUMDAT. */
 int info_luminaire(const struct info_arguments *arguments);
+/* The same for a checkpoint or a part of a picture. */
+int info_store(const struct info_arguments *arguments);
 
 #endif
