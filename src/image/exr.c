@@ -21,25 +21,35 @@ struct job {
     const struct sr_image_source *source;
     struct sr_array *out;
     char message[256]; // the library's first complaint
+    bool has_no_memory; // which the library may call by another name
 };
+
+/* Of this thread. The library may hold its lock while it complains, so that asking it for its user data could wait for ever. */
+static _Thread_local struct job *current_job;
 
 static void on_error(exr_const_context_t context, exr_result_t code, const char *text)
 {
-    void *user = NULL;
+    struct job *job = current_job;
+    (void)context;
     (void)code;
-    if (!context || exr_get_user_data(context, &user) != EXR_ERR_SUCCESS || !user)
-        return;
-    struct job *job = user;
-    if (!job->message[0])
+    if (job && !job->message[0])
         snprintf(job->message, sizeof job->message, "%s", text);
 }
 
+static void *allocate(size_t size)
+{
+    void *p = sr_alloc(size);
+    if (!p && current_job)
+        current_job->has_no_memory = true;
+    return p;
+}
+
 static int64_t take(exr_const_context_t context, void *user, void *buffer, uint64_t size, uint64_t offset,
-                    exr_stream_error_func_ptr_t fail)
+                    exr_stream_error_func_ptr_t complain)
 {
     const struct sr_image_source *source = ((struct job *)user)->source;
     (void)context;
-    (void)fail;
+    (void)complain;
     // the header is read in blocks that may end behind a small file: less is then told, and the library judges
     uint64_t left = offset < source->size ? source->size - offset : 0;
     size_t n = (size_t)(size < left ? size : left);
@@ -54,11 +64,12 @@ static int64_t source_size(exr_const_context_t context, void *user)
 }
 
 static int64_t put(exr_const_context_t context, void *user, const void *buffer, uint64_t size, uint64_t offset,
-                   exr_stream_error_func_ptr_t fail)
+                   exr_stream_error_func_ptr_t complain)
 {
     struct sr_array *out = ((struct job *)user)->out;
     if (offset > SIZE_MAX / 8 || size > SIZE_MAX / 8 || !sr_array_reserve(out, offset + size, 1)) {
-        fail(context, EXR_ERR_OUT_OF_MEMORY, "not enough memory");
+        ((struct job *)user)->has_no_memory = true;
+        complain(context, EXR_ERR_OUT_OF_MEMORY, "not enough memory");
         return -1;
     }
     memcpy((uint8_t *)out->data + offset, buffer, size);
@@ -70,8 +81,9 @@ static int64_t put(exr_const_context_t context, void *user, const void *buffer, 
 static exr_context_initializer_t initializer(struct job *job)
 {
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    current_job = job;
     init.error_handler_fn = on_error;
-    init.alloc_fn = sr_alloc;
+    init.alloc_fn = allocate;
     init.free_fn = sr_free;
     init.user_data = job;
     init.flags = EXR_CONTEXT_FLAG_SILENT_HEADER_PARSE;
@@ -257,6 +269,14 @@ static const char *refusal(exr_storage_t storage, const exr_attr_chlist_t *list,
     return width * (uint64_t)list->num_channels * 4 > INT32_MAX ? "has rows of more than 2 GiB" : NULL;
 }
 
+static sr_status fail(const struct job *job, struct sr_error *error, const char *what, exr_result_t result)
+{
+    if (job->has_no_memory)
+        return sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory to read it", job->source->label);
+    return sr_fail(error, SR_ERROR_INPUT, "%s: %s: %s", job->source->label, what,
+                   job->message[0] ? job->message : exr_get_default_error_message(result));
+}
+
 static sr_status read_part(exr_context_t exr, struct job *job, struct sr_image **image, struct sr_error *error)
 {
     const char *label = job->source->label;
@@ -266,7 +286,7 @@ static sr_status read_part(exr_context_t exr, struct job *job, struct sr_image *
     if (exr_get_storage(exr, 0, &storage) != EXR_ERR_SUCCESS || exr_get_channels(exr, 0, &list) != EXR_ERR_SUCCESS ||
         exr_get_data_window(exr, 0, &data) != EXR_ERR_SUCCESS ||
         exr_get_display_window(exr, 0, &display) != EXR_ERR_SUCCESS)
-        return sr_fail(error, SR_ERROR_INPUT, "%s: the EXR header is damaged: %s", label, job->message);
+        return fail(job, error, "the EXR header is damaged", EXR_ERR_MISSING_REQ_ATTR);
     int64_t width = (int64_t)data.max.x - data.min.x + 1, height = (int64_t)data.max.y - data.min.y + 1;
     int64_t full_width = (int64_t)display.max.x - display.min.x + 1,
             full_height = (int64_t)display.max.y - display.min.y + 1;
@@ -305,8 +325,7 @@ static sr_status read_part(exr_context_t exr, struct job *job, struct sr_image *
         if (k.is_started)
             exr_decoding_destroy(exr, &k.pipeline);
         if (result != EXR_ERR_SUCCESS)
-            status = sr_fail(error, SR_ERROR_INPUT, "%s: the EXR pixels are damaged or cut short: %s", label,
-                             job->message[0] ? job->message : exr_get_default_error_message(result));
+            status = fail(job, error, "the EXR pixels are damaged or cut short", result);
     }
     sr_arena_free(&scratch);
     return status;
@@ -323,10 +342,10 @@ static sr_status decode(const struct sr_image_source *source, struct sr_image **
     sr_status status =
         result == EXR_ERR_SUCCESS
             ? read_part(exr, &job, image, error)
-            : sr_fail(error, SR_ERROR_INPUT, "%s: the EXR header is damaged or cut short: %s", source->label,
-                      job.message[0] ? job.message : exr_get_default_error_message(result));
+            : fail(&job, error, "the EXR header is damaged or cut short", result);
     if (exr)
         exr_finish(&exr);
+    current_job = NULL;
     if (status != SR_OK) {
         sr_image_free(*image);
         *image = NULL;
@@ -443,11 +462,12 @@ static sr_status encode(const struct sr_image *image, const struct sr_image_writ
         exr_result_t finished = exr_finish(&exr);
         result = result == EXR_ERR_SUCCESS ? finished : result;
     }
+    current_job = NULL;
     if (floats != image->floats)
         sr_free(floats);
     if (result == EXR_ERR_SUCCESS)
         return SR_OK;
-    return sr_fail(error, result == EXR_ERR_OUT_OF_MEMORY ? SR_ERROR_RESOURCE : SR_ERROR_USAGE,
+    return sr_fail(error, job.has_no_memory || result == EXR_ERR_OUT_OF_MEMORY ? SR_ERROR_RESOURCE : SR_ERROR_USAGE,
                    "the EXR library says: %s", job.message[0] ? job.message : exr_get_default_error_message(result));
 }
 

@@ -97,7 +97,7 @@ static inline bool read_value(struct reader *r, enum sr_ply_type type, double *v
 static bool skip_list(struct reader *r, const struct sr_ply_property *p)
 {
     double count, ignored;
-    if (!read_value(r, p->count_type, &count) || count < 0)
+    if (!read_value(r, p->count_type, &count) || !(count >= 0 && count < 0x1p53))
         return false;
     if (r->format != SR_PLY_ASCII) {
         uint64_t size = (uint64_t)count * sr_ply_type_size(p->type);

@@ -96,23 +96,31 @@ static float check_value(const struct tree *t, float v)
     return t->no_negative && v < 0 ? 0 : v;
 }
 
+static sr_status no_memory(const struct tree *t)
+{
+    return sr_fail(t->file->error, SR_ERROR_RESOURCE, "%s: not enough memory for its grid", t->file->path);
+}
+
 /* The number that stands for a constant. */
-static bool add_tile(struct tree *t, float value, int32_t *number)
+static sr_status add_tile(struct tree *t, float value, int32_t *number)
 {
     value = check_value(t, value);
     const float *known = t->tiles.data;
     for (size_t i = t->tiles.count > 4 ? t->tiles.count - 4 : 0; i < t->tiles.count; ++i)
         if (known[i] == value) {
             *number = ~(int32_t)i;
-            return true;
+            return SR_OK;
         }
-    if (!isfinite(value) || t->tiles.count >= INT32_MAX)
-        return false;
+    if (!isfinite(value))
+        return refuse(t->file, "holds values that are infinite or no numbers");
+    if (t->tiles.count >= INT32_MAX)
+        return refuse(t->file, "has more constants than are supported");
     float *slot = sr_array_push(&t->tiles, sizeof *slot);
-    if (slot)
-        *slot = value;
+    if (!slot)
+        return no_memory(t);
+    *slot = value;
     *number = ~(int32_t)(t->tiles.count - 1);
-    return slot != NULL;
+    return SR_OK;
 }
 
 static sr_status read_leaf(struct tree *t, uint64_t at)
@@ -141,16 +149,6 @@ static sr_status read_leaf(struct tree *t, uint64_t at)
     return SR_OK;
 }
 
-static sr_status no_memory(const struct tree *t)
-{
-    return sr_fail(t->file->error, SR_ERROR_RESOURCE, "%s: not enough memory for its grid", t->file->path);
-}
-
-static sr_status damaged_tile(const struct tree *t)
-{
-    return refuse(t->file, "holds values that are infinite or no numbers");
-}
-
 static sr_status read_lower(struct tree *t, uint64_t at)
 {
     const pnanovdb_lower_handle_t lower = {{at}};
@@ -158,8 +156,8 @@ static sr_status read_lower(struct tree *t, uint64_t at)
     for (uint32_t n = 0; n < LOWER_CHILDREN; ++n) {
         pnanovdb_address_t entry = pnanovdb_lower_get_table_address(t->type, t->buf, lower, n);
         if (!pnanovdb_lower_get_child_mask(t->buf, lower, n)) {
-            if (!add_tile(t, pnanovdb_read_float(t->buf, entry), &to[n]))
-                return damaged_tile(t);
+            if (add_tile(t, pnanovdb_read_float(t->buf, entry), &to[n]) != SR_OK)
+                return t->file->error->status;
             continue;
         }
         uint64_t leaf;
@@ -240,8 +238,8 @@ static sr_status read_upper(struct tree *t, uint64_t at, const int32_t start[3])
             *to = (int32_t)t->block_count;
             if (read_lower(t, at + (uint64_t)pnanovdb_read_int64(t->buf, entry)) != SR_OK)
                 return t->file->error->status;
-        } else if (!add_tile(t, pnanovdb_read_float(t->buf, entry), to))
-            return damaged_tile(t);
+        } else if (add_tile(t, pnanovdb_read_float(t->buf, entry), to) != SR_OK)
+            return t->file->error->status;
     }
     return SR_OK;
 }
@@ -255,8 +253,8 @@ static sr_status read_root_constant(struct tree *t, float value, const int32_t s
         return ++t->constant_count <= MOST_BLOCKS / UPPER_CHILDREN ? SR_OK : refuse(t->file, "its grid has more constants of 4096^3 voxels than are supported");
     }
     int32_t number;
-    if (!add_tile(t, value, &number))
-        return damaged_tile(t);
+    if (add_tile(t, value, &number) != SR_OK)
+        return t->file->error->status;
     for (int32_t n = 0; n < UPPER_CHILDREN; ++n)
         *table_entry(t, (int32_t[]){start[0] + (n >> 10), start[1] + (n >> 5 & 31), start[2] + (n & 31)}) = number;
     return SR_OK;
@@ -310,8 +308,8 @@ static sr_status read_tree(struct tree *t, struct sr_arena *arena)
     int32_t background;
     if (!t->table || !t->blocks || !t->leaves)
         return no_memory(t);
-    if (!add_tile(t, g->background, &background))
-        return damaged_tile(t);
+    if (add_tile(t, g->background, &background) != SR_OK)
+        return t->file->error->status;
     for (uint64_t i = 0; i < entries; ++i)
         t->table[i] = background;
     t->block_count = t->leaf_count = 0;

@@ -102,12 +102,14 @@ static sr_status read_aperture(struct sr_pbrt_build *b, const char *name, struct
         return sr_pbrt_no_memory(b);
     if (!draw(name, values)) {
         const char *path = sr_pbrt_resolve(b, b->arena, name, where);
-        struct sr_image *image;
+        struct sr_image *image = NULL;
         struct sr_error inner = {0};
         if (!path)
             return sr_pbrt_no_memory(b);
-        if (sr_image_read(path, &image, &inner) != SR_OK || sr_image_to_float(image, &inner) != SR_OK)
+        if (sr_image_read(path, &image, &inner) != SR_OK || sr_image_to_float(image, &inner) != SR_OK) {
+            sr_image_free(image);
             return sr_pbrt_fail(b->d, where, b->error, inner.status, "aperture: %s", inner.text);
+        }
         uint64_t size[2] = {image->width, image->height};
         b->hash = sr_pbrt_hash(b->hash, size, sizeof size);
         b->hash = sr_pbrt_hash(b->hash, image->floats, (size_t)image->width * image->height * image->channel_count * sizeof(float));
