@@ -57,9 +57,9 @@ static void spot_flux(const struct row *row)
 }
 
 // the hemisphere is sampled twice, by the meter and by the grey receiver: the second for some of the shapes only
-static const struct effort usual = {.meter = 65536, .path = 2048, .lights = 2048};
-static const struct effort all = {.meter = 65536, .path = 2048, .lights = 2048, .surface = 65536};
-static const struct effort small = {.meter = 262144, .path = 2048, .lights = 2048}; // sources that few rays meet
+static const struct effort usual = {.meter = 8192, .path = 2048, .lights = 2048};
+static const struct effort all = {.meter = 8192, .path = 2048, .lights = 2048, .surface = 65536};
+static const struct effort small = {.meter = 32768, .path = 2048, .lights = 2048}; // sources that few rays meet
 
 static const char disk_above[] = BLACK GLOW "ReverseOrientation Shape \"disk\" \"float height\" 2 \"float radius\" 1\n";
 
@@ -78,7 +78,7 @@ static void sphere_at(const struct row *row, double distance, double tilt, doubl
 
 static void sphere(const struct row *row)
 {
-    sphere_at(row, row->a, row->b, 1, row->b == 90 ? (struct effort){.meter = 524288, .path = 2048, .lights = 2048} : small);
+    sphere_at(row, row->a, row->b, 1, row->b == 90 ? (struct effort){.meter = 65536, .path = 2048, .lights = 2048} : small);
 }
 
 static void cap(const struct row *row)
@@ -134,7 +134,7 @@ static void tilted(const struct row *row)
     static const char sky[] = "LightSource \"infinite\" \"float scale\" 1\n" BLACK "Shape \"disk\" \"float height\" -0.1 \"float radius\" 1e5\n";
     static const char plane[] = BLACK GLOW "ReverseOrientation Shape \"disk\" \"float height\" 0.1 \"float radius\" 1e5\n";
     check_irradiance(row, origin, n, sky, (struct effort){.path = 65536}, 1);
-    check_irradiance(row, origin, n, plane, (struct effort){.meter = 65536}, 1);
+    check_irradiance(row, origin, n, plane, (struct effort){.meter = 32768}, 1);
 }
 
 /* A black slope of a white plain under a uniform sky: E = pi whatever its tilt. */
