@@ -43,7 +43,7 @@ static sr_status put_all(struct sr_keeper *k, struct sr_store_out *out, const st
         if (status == SR_OK && k->counts[i])
             status = sr_store_put(out, i ? "counts1" : "counts0", k->counts[i], n * sizeof *k->counts[i], error);
     }
-    return status;
+    return status == SR_OK && k->part ? sr_part_put(out, k->part, error) : status;
 }
 
 /* Tells each kind of failure once, and when it is over. */
@@ -93,14 +93,23 @@ void sr_keeper_end(struct sr_keeper *k, struct sr_render_report *report)
     report->kept = k->kept;
 }
 
-sr_status sr_render_checkpoint(const struct sr_render_job *job, const struct sr_film *film, struct sr_render_report *report, struct sr_error *error)
+static sr_status keep_complete(const struct sr_render_job *job, struct sr_film *film, struct sr_render_part *part, struct sr_render_report *report, struct sr_error *error)
 {
-    struct sr_film *only = (struct sr_film *)(uintptr_t)film; // which is read alone
-    struct sr_keeper k = {.keep = job->keep, .films = {only}, .film_count = 1, .pass = COMPLETE, .kept = report->kept};
+    struct sr_keeper k = {.keep = job->keep, .films = {film}, .film_count = 1, .part = part, .pass = COMPLETE, .kept = report->kept};
     if (!write_now(&k, report, 1, NULL, NULL))
         sr_fail(error, SR_ERROR_RESOURCE, "%s", k.told);
     report->kept = k.kept;
     return error->status;
+}
+
+sr_status sr_render_checkpoint(const struct sr_render_job *job, const struct sr_film *film, struct sr_render_report *report, struct sr_error *error)
+{
+    return keep_complete(job, (struct sr_film *)(uintptr_t)film, NULL, report, error); // the film is read alone
+}
+
+sr_status sr_render_part_checkpoint(const struct sr_render_job *job, struct sr_render_part *part, struct sr_render_report *report, struct sr_error *error)
+{
+    return keep_complete(job, sr_part_splats_film(part), part, report, error);
 }
 
 void sr_render_forget(const struct sr_render_keep *keep)
@@ -133,7 +142,7 @@ static bool write_beside(struct sr_keeper_watch *w)
 {
     struct sr_keeper *k = w->keeper;
     struct sr_error ignored = {0};
-    if (!k->copy)
+    if (!k->copy && !k->part) // a part is large
         k->copy = sr_film_twin(w->view.film, &ignored);
     struct sr_render_report report;
     w->view.hold(w->view.run);
@@ -285,6 +294,8 @@ static sr_status take(struct sr_keeper *k, const struct sr_store_in *in, const c
             return sr_fail(error, SR_ERROR_INPUT, "%s: has no counts of samples", path);
         memcpy(k->counts[i], counts, n);
     }
+    if (k->part && sr_part_get(in, path, k->part, error) != SR_OK)
+        return error->status;
     k->pass = p->pass;
     k->is_resumed = true;
     k->kept.resumed_share = p->share;

@@ -63,15 +63,13 @@ static struct head head_of(const struct sr_render_part *part)
     };
 }
 
-static void put_nodes(struct sr_store_out *out, const struct sr_render_part *part, struct sr_error *error)
+sr_status sr_part_put(struct sr_store_out *out, const struct sr_render_part *part, struct sr_error *error)
 {
     size_t pixels = sr_part_pixels(part);
     char name[NAME];
     struct node_head *nodes = sr_alloc(part->node_count * sizeof *nodes);
-    if (!nodes) {
-        sr_part_no_memory(error);
-        return;
-    }
+    if (!nodes)
+        return sr_part_no_memory(error);
     for (size_t i = 0; i < part->node_count; ++i)
         nodes[i] = (struct node_head){part->nodes[i].block, part->nodes[i].begin, part->nodes[i].count};
     sr_store_put(out, "nodes", nodes, part->node_count * sizeof *nodes, error);
@@ -84,6 +82,7 @@ static void put_nodes(struct sr_store_out *out, const struct sr_render_part *par
         if (n->buckets)
             sr_store_put(out, name_of("buckets", i, name), n->buckets, pixels * part->film->settings.buckets * sizeof *n->buckets, error);
     }
+    return error->status;
 }
 
 static void put_splats(struct sr_store_out *out, const struct sr_film *film, struct sr_error *error)
@@ -108,7 +107,7 @@ sr_status sr_render_part_write(const struct sr_render_part *part, const char *id
     sr_store_put(out, "identity", identity, strlen(identity) + 1, error);
     sr_store_put(out, "about", about, strlen(about) + 1, error);
     sr_store_put(out, "head", &head, sizeof head, error);
-    put_nodes(out, part, error);
+    sr_part_put(out, part, error);
     if (part->film->splats)
         put_splats(out, part->film, error);
     if (error->status == SR_OK)
@@ -175,9 +174,34 @@ static void get_sums(const struct sr_store_in *in, const char *what, size_t numb
         memcpy(to, from, size);
 }
 
+static void get_all_sums(const struct sr_store_in *in, struct sr_render_part *part, size_t i, struct sr_error *error)
+{
+    struct part_node *n = &part->nodes[i];
+    size_t pixels = sr_part_pixels(part);
+    get_sums(in, "colours", i, n->colours, pixels * sizeof *n->colours, error);
+    if (n->firsts)
+        get_sums(in, "firsts", i, n->firsts, pixels * sizeof *n->firsts, error);
+    if (n->buckets)
+        get_sums(in, "buckets", i, n->buckets, pixels * part->film->settings.buckets * sizeof *n->buckets, error);
+}
+
+sr_status sr_part_get(const struct sr_store_in *in, const char *path, struct sr_render_part *part, struct sr_error *error)
+{
+    struct sr_error own = {0};
+    const struct node_head *nodes = get(in, "nodes", part->node_count * sizeof *nodes, &own);
+    for (size_t i = 0; i < part->node_count && own.status == SR_OK; ++i) {
+        const struct part_node *n = &part->nodes[i];
+        if (nodes[i].block != n->block || nodes[i].begin != n->begin || nodes[i].count != n->count)
+            sr_fail(&own, SR_ERROR_INPUT, "%s", WORDS);
+        else
+            get_all_sums(in, part, i, &own);
+    }
+    return own.status ? sr_fail(error, own.status, "%s: %s", path, own.text) : SR_OK;
+}
+
 static void get_node(const struct sr_store_in *in, struct sr_render_part *part, struct node_head head, struct sr_error *error)
 {
-    size_t i = part->node_count, pixels = sr_part_pixels(part);
+    size_t i = part->node_count;
     struct part_node *n = &part->nodes[i];
     *n = (struct part_node){.block = head.block, .begin = head.begin, .count = head.count};
     bool is_after = i == 0 || n[-1].block < n->block || (n[-1].block == n->block && n[-1].begin + n[-1].count <= n->begin);
@@ -186,15 +210,10 @@ static void get_node(const struct sr_store_in *in, struct sr_render_part *part, 
         return;
     }
     part->node_count += 1;
-    if (!sr_part_node_alloc(part, n)) {
+    if (sr_part_node_alloc(part, n))
+        get_all_sums(in, part, i, error);
+    else
         sr_part_no_memory(error);
-        return;
-    }
-    get_sums(in, "colours", i, n->colours, pixels * sizeof *n->colours, error);
-    if (n->firsts)
-        get_sums(in, "firsts", i, n->firsts, pixels * sizeof *n->firsts, error);
-    if (n->buckets)
-        get_sums(in, "buckets", i, n->buckets, pixels * part->film->settings.buckets * sizeof *n->buckets, error);
 }
 
 static void get_part(const struct sr_store_in *in, struct sr_render_part *part, struct sr_error *error)

@@ -91,6 +91,9 @@ uint64_t sr_part_nodes(uint32_t spp, uint32_t blocks, struct sr_render_range ran
 size_t sr_part_node_B(const struct sr_render_job *job);
 struct sr_film *sr_part_splats_film(struct sr_render_part *part); // what the pass's film is
 struct sr_render_report *sr_part_report(struct sr_render_part *part);
+/* The sums of all nodes in a store, and back into a part of the same nodes. */
+sr_status sr_part_put(struct sr_store_out *out, const struct sr_render_part *part, struct sr_error *error);
+sr_status sr_part_get(const struct sr_store_in *in, const char *path, struct sr_render_part *part, struct sr_error *error);
 /* Keeps a pixel's sums of the samples of a block that the part has. Threads may call it for different pixels or blocks. */
 void sr_part_keep(struct sr_render_part *part, uint32_t block, uint32_t x, uint32_t y, const struct sr_block_tree *tree);
 
@@ -107,6 +110,7 @@ struct sr_keeper {
     struct sr_film *films[2];             // all that the sums are in
     uint32_t film_count;
     uint32_t *counts[2];                  // NULL, or of each pixel: what an adaptive render has settled
+    struct sr_render_part *part;          // NULL, or what takes the sums; films[0] then takes splats and counts blocks
     uint32_t pass;                        // that is under way, or comes next
     bool is_resumed, is_complete;         // after sr_keeper_resume; complete: films[0] is the picture
     bool loses_file;                      // what is in the file is damaged: it does not become the previous generation

@@ -138,7 +138,7 @@ static bool wait_for_turn(struct run *run, uint32_t tile, uint32_t block)
 /* Whether the pixel's block came from a checkpoint. */
 static bool is_there(const struct run *run, uint32_t x, uint32_t y, uint32_t block)
 {
-    return SR_UNLIKELY(run->had != NULL) && run->had[(size_t)y * run->film->width + x] > run->pass->blocks_before + block;
+    return SR_UNLIKELY(run->had != NULL) && run->had[(size_t)y * run->film->width + x] > run->pass->blocks_before + block - run->first_block;
 }
 
 /* Cancelled, the pixels that are done come in; with splats that takes one pixel's block at most, without no time. */
@@ -164,8 +164,10 @@ static bool do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratc
         for (uint32_t i = 0; i < tree->depth; ++i)
             dropped += tree->nodes[i].dropped;
         rays = worker->rays, shadow_rays = worker->shadow_rays, vertices = worker->vertices;
-        if (part) {
+        if (part) { // not while a checkpoint reads it
+            pthread_rwlock_rdlock(&run->film_lock);
             sr_part_keep(part, block, x, y, tree);
+            pthread_rwlock_unlock(&run->film_lock);
             continue;
         }
         scratch[done] = tree->nodes[0];
@@ -175,10 +177,14 @@ static bool do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratc
     if (!wait_for_turn(run, tile, block))
         return false;
     pthread_rwlock_rdlock(&run->film_lock);
-    for (uint32_t i = 0; !part && i < done; ++i) {
+    for (uint32_t i = 0; i < done; ++i) {
         uint32_t x = x0 + i % width, y = y0 + i / width;
         if (is_there(run, x, y, block))
             continue;
+        if (part) {
+            run->film->pixels[(size_t)y * run->film->width + x].blocks += 1;
+            continue;
+        }
         if (buckets)
             sr_film_store_buckets(run->film, x, y, buckets + (size_t)i * run->picture.response.buckets);
         sr_film_store(run->film, x, y, &scratch[i]);
@@ -452,7 +458,8 @@ sr_status sr_render(const struct sr_render_job *wanted, struct sr_film **film, s
     if (status == SR_OK && !keeper.is_complete)
         status = sr_render_pass(job, &pass, report, error);
     sr_keeper_end(&keeper, report);
-    count_lost_splats(*film, report);
+    if (!keeper.is_complete) // else they have been counted
+        count_lost_splats(*film, report);
     if (status != SR_OK && status != SR_CANCELLED) {
         sr_film_destroy(*film);
         *film = NULL;
@@ -465,11 +472,13 @@ double sr_render_samples_B(const struct sr_render_job *job, struct sr_render_ran
     return (double)sr_part_nodes(job->spp, pass_of(job).blocks, range) * (double)sr_part_node_B(job);
 }
 
-sr_status sr_render_samples(const struct sr_render_job *wanted, struct sr_render_range range, struct sr_render_part **part, struct sr_error *error)
+sr_status sr_render_samples(const struct sr_render_job *wanted, struct sr_render_range range, struct sr_render_part **part, struct sr_render_report *report,
+                            struct sr_error *error)
 {
     struct sr_render_job own = *wanted, *job = &own;
     own.with_aov |= own.film.is_gbuffer;
     *part = NULL;
+    *report = (struct sr_render_report){0};
     if (check(job, error) != SR_OK)
         return error->status;
     if (job->adaptive.is_on)
@@ -482,11 +491,18 @@ sr_status sr_render_samples(const struct sr_render_job *wanted, struct sr_render
     if (status != SR_OK)
         return status;
     pass.film = sr_part_splats_film(pass.part);
-    pass.start_s = sr_clock_s();
+    struct sr_keeper keeper = {.keep = job->keep, .films = {pass.film}, .film_count = 1, .part = pass.part};
+    pass.keeper = &keeper;
     status = has_splats(job) ? sr_film_add_splats(pass.film, pass.blocks, error) : SR_OK;
     if (status == SR_OK)
-        status = sr_render_pass(job, &pass, sr_part_report(pass.part), error);
-    count_lost_splats(pass.film, sr_part_report(pass.part));
+        status = sr_keeper_resume(&keeper, report, error);
+    pass.start_s = sr_clock_s() - report->render_s;
+    if (status == SR_OK && !keeper.is_complete)
+        status = sr_render_pass(job, &pass, report, error);
+    sr_keeper_end(&keeper, report);
+    if (!keeper.is_complete)
+        count_lost_splats(pass.film, report);
+    *sr_part_report(pass.part) = *report;
     if (status == SR_OK)
         *part = pass.part;
     else

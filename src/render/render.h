@@ -131,8 +131,11 @@ struct sr_render_range {
     uint32_t begin, end; // begin <= i < end
 };
 /* Renders these samples of each pixel. Fails for adaptive jobs, whose samples depend on each other's values. Cancelled:
- * SR_CANCELLED, and there is no part. */
-sr_status sr_render_samples(const struct sr_render_job *job, struct sr_render_range range, struct sr_render_part **part, struct sr_error *error);
+ * SR_CANCELLED, and there is no part. If it is kept (job->keep), the range belongs to the identity. */
+sr_status sr_render_samples(const struct sr_render_job *job, struct sr_render_range range, struct sr_render_part **part, struct sr_render_report *report,
+                            struct sr_error *error);
+/* Keeps a part whose work is done, where it could not be written; before sr_render_part_film is asked for. */
+sr_status sr_render_part_checkpoint(const struct sr_render_job *job, struct sr_render_part *part, struct sr_render_report *report, struct sr_error *error);
 /* [B] for each pixel of the sums of such a part. */
 double sr_render_samples_B(const struct sr_render_job *job, struct sr_render_range range);
 void sr_render_part_destroy(struct sr_render_part *part); // NULL is allowed

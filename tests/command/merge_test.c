@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Parts of a picture by the command: files to the last byte, and what is refused, with what is told. */
+#define _POSIX_C_SOURCE 200809L
 #include "run.h"
 
 #include "base/base.h"
 
+#include <signal.h>
+#include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #define SMALL " --resolution 32,24 --spp 22 -q "
@@ -62,6 +66,30 @@ TEST(even_parts_by_number_cover_all_samples)
     EXPECT_EQUAL_INT(json_integer_value(json_object_get(json_object_get(j, "counts"), "paths")), 17 * 15 * 22);
     json_decref(j);
     expect_same_file("whole.exr", "merged.exr");
+}
+
+/* Killed as soon as something is kept of it. */
+TEST(a_part_that_was_killed_goes_on)
+{
+    char part[400], text[500];
+    snprintf(part, sizeof part, "render " CORNELL " --resolution 40,40 --spp %d --sample-range %d-%d -q", is_slow_build() ? 40 : 400, 3, is_slow_build() ? 30 : 300);
+    snprintf(text, sizeof text, "%s -o uncut.srp", part);
+    run_expecting(0, text);
+    snprintf(text, sizeof text, "%s -o killed.srp --checkpoint-interval 0.02 --threads 1", part);
+    pid_t pid = start(text);
+    double start_s = sr_clock_s();
+    char checkpoint[600];
+    snprintf(checkpoint, sizeof checkpoint, "%s/killed.srp.srk", test_folder());
+    while (access(checkpoint, F_OK) != 0 && sr_clock_s() - start_s < 60)
+        nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
+    kill(pid, SIGKILL);
+    int how = 0;
+    EXPECT(waitpid(pid, &how, 0) == pid && WIFSIGNALED(how));
+    EXPECT(access(checkpoint, F_OK) == 0);
+    snprintf(text, sizeof text, "%s -o killed.srp --resume", part);
+    run_expecting(0, text);
+    expect_same_file("uncut.srp", "killed.srp");
+    EXPECT_EQUAL_INT(count_files("killed.srp.srk"), 0);
 }
 
 TEST(missing_samples_are_told_and_may_be_allowed)

@@ -153,7 +153,7 @@ static int finish(struct rendering *r, struct render_keeping *keeping, const str
         command_fail("render", &error);
     if (!report->is_complete && is_written)
         fprintf(stderr, "steradian render: interrupted; what there was has been written\n");
-    int code = render_keep_end(keeping, r->job, film, report, is_written);
+    int code = render_keep_end(keeping, r->job, film, NULL, report, is_written);
     if (!is_written)
         return SR_ERROR_RESOURCE;
     if (report->dropped)
@@ -198,7 +198,7 @@ static int render_scene(const struct render_arguments *a, const struct sr_import
     if (code)
         return code;
     if (a->has_range)
-        return render_part(&r, identity);
+        return render_part(&r, &job, identity);
     struct render_keeping keeping;
     code = render_keep_begin(a, scene, identity, &job, &keeping);
     r.keep = job.keep;

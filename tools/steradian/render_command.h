@@ -59,7 +59,7 @@ bool render_parse_part(const char *text, uint64_t part[2]);
 /* What does not go with a part. 0, or the exit code of a mistake that has been told. */
 int render_check_part(const struct render_arguments *a);
 /* Renders some of the samples and writes them; the exit code. identity: of the picture. */
-int render_part(struct rendering *r, const char *identity);
+int render_part(struct rendering *r, struct sr_render_job *job, const char *identity);
 
 /* ---- render_output.c ---- */
 
@@ -97,7 +97,8 @@ struct render_keeping {
 int render_keep_begin(const struct render_arguments *a, const struct sr_import_result *scene, const char *identity, struct sr_render_job *job,
                       struct render_keeping *k);
 /* After the outputs: is_written, whether they could be. Removes what is not needed any more, tells what is left; the exit code. */
-int render_keep_end(struct render_keeping *k, const struct sr_render_job *job, const struct sr_film *film, struct sr_render_report *report, bool is_written);
+int render_keep_end(struct render_keeping *k, const struct sr_render_job *job, const struct sr_film *film, struct sr_render_part *part,
+                    struct sr_render_report *report, bool is_written); // of a film, or of a part
 
 /* ---- render_summary.c ---- */
 

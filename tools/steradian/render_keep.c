@@ -35,7 +35,7 @@ int render_keep_begin(const struct render_arguments *a, const struct sr_import_r
     return 0;
 }
 
-int render_keep_end(struct render_keeping *k, const struct sr_render_job *job, const struct sr_film *film, struct sr_render_report *report, bool is_written)
+int render_keep_end(struct render_keeping *k, const struct sr_render_job *job, const struct sr_film *film, struct sr_render_part *part, struct sr_render_report *report, bool is_written)
 {
     const struct sr_render_keep *keep = job->keep;
     if (!keep)
@@ -43,7 +43,7 @@ int render_keep_end(struct render_keeping *k, const struct sr_render_job *job, c
     struct sr_error error = {0};
     bool is_kept = report->kept.written > 0 && !report->kept.is_behind;
     if (report->is_complete && !is_written) { // all the work, for when there is room again
-        is_kept = sr_render_checkpoint(job, film, report, &error) == SR_OK;
+        is_kept = (part ? sr_render_part_checkpoint(job, part, report, &error) : sr_render_checkpoint(job, film, report, &error)) == SR_OK;
         fprintf(stderr, is_kept ? "steradian render: the work is done and kept in %s: --resume writes the picture\n" : "steradian render: nor can %s\n",
                 is_kept ? keep->path : error.text);
         return SR_ERROR_RESOURCE;

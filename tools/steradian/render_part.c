@@ -75,16 +75,19 @@ static int resolve(const struct render_arguments *a, uint32_t spp, struct sr_ren
     return 0;
 }
 
-static int finish(struct rendering *r, struct sr_render_part *part, const char *identity)
+static const char *part_name(const struct render_arguments *a)
+{
+    int i = 0;
+    while (!sr_path_has_ending(a->outputs[i], PART_ENDING))
+        ++i;
+    return a->outputs[i];
+}
+
+/* What there is of a part that has been written. */
+static int tell(struct rendering *r, struct sr_render_part *part)
 {
     const struct render_arguments *a = r->arguments;
     struct sr_error error = {0};
-    const char *name = NULL;
-    for (int i = 0; i < a->output_count; ++i)
-        if (sr_path_has_ending(a->outputs[i], PART_ENDING))
-            name = a->outputs[i];
-    if (sr_render_part_write(part, identity, r->about, name, &error) != SR_OK)
-        return command_fail("render", &error);
     const struct sr_film *film = sr_render_part_film(part);
     const struct sr_render_report *report = sr_render_part_report(part);
     if (a->output_count > 1 && render_write_outputs(r, film, report->render_s, report->is_complete, &error) != SR_OK)
@@ -93,31 +96,59 @@ static int finish(struct rendering *r, struct sr_render_part *part, const char *
         render_print_replay(r, report);
     if (!a->quiet) {
         render_print_summary(r, film, report);
-        fprintf(stderr, "%s: samples %u-%u of 0-%u of each pixel\n", name, r->range.begin, r->range.end, r->job->spp);
+        fprintf(stderr, "%s: samples %u-%u of 0-%u of each pixel\n", part_name(a), r->range.begin, r->range.end, r->job->spp);
     }
     return a->json ? render_print_json(r, film, report, json_array()) : 0;
 }
 
-int render_part(struct rendering *r, const char *identity)
+static int render_and_write(struct rendering *r, struct render_keeping *keeping, const char *identity)
 {
     struct sr_error error = {0};
-    int code = resolve(r->arguments, r->job->spp, &r->range);
-    if (code)
-        return code;
-    if (render_check_memory(r->job, &r->range, &error) != SR_OK)
-        return command_fail("render", &error);
-    render_defer_interrupts();
     struct sr_render_part *part;
-    sr_status status = sr_render_samples(r->job, r->range, &part, &error);
+    struct sr_render_report report;
+    render_defer_interrupts();
+    sr_status status = sr_render_samples(r->job, r->range, &part, &report, &error);
     if (r->on_terminal)
         fputs("\r\033[K", stderr);
     if (status == SR_CANCELLED) {
         fprintf(stderr, "steradian render: interrupted; no part has been written\n");
-        return render_interrupt_exit();
+        int code = render_keep_end(keeping, r->job, NULL, NULL, &report, false);
+        return code ? code : render_interrupt_exit();
     }
     if (status != SR_OK)
         return command_fail("render", &error);
-    code = finish(r, part, identity);
+    bool is_written = sr_render_part_write(part, identity, r->about, part_name(r->arguments), &error) == SR_OK;
+    if (!is_written)
+        command_fail("render", &error);
+    int code = render_keep_end(keeping, r->job, NULL, part, &report, is_written);
+    if (is_written) {
+        int told = tell(r, part);
+        code = code ? code : told;
+    }
     sr_render_part_destroy(part);
+    return is_written ? code : SR_ERROR_RESOURCE;
+}
+
+int render_part(struct rendering *r, struct sr_render_job *job, const char *identity)
+{
+    struct sr_error error = {0};
+    int code = resolve(r->arguments, job->spp, &r->range);
+    if (code)
+        return code;
+    struct sr_arena arena = {0};
+    const char *of_part = sr_arena_printf(&arena, "%ssamples %u-%u\n", identity, r->range.begin, r->range.end);
+    if (!of_part)
+        sr_fail(&error, SR_ERROR_RESOURCE, "not enough memory for what the part is of");
+    if (error.status || render_check_memory(job, &r->range, &error) != SR_OK) {
+        sr_arena_free(&arena);
+        return command_fail("render", &error);
+    }
+    struct render_keeping keeping;
+    code = render_keep_begin(r->arguments, r->scene, of_part, job, &keeping);
+    r->keep = job->keep;
+    if (!code)
+        code = render_and_write(r, &keeping, identity);
+    sr_arena_free(&keeping.arena);
+    sr_arena_free(&arena);
     return code;
 }

@@ -41,10 +41,11 @@ static struct sr_render_part *part_of(const struct sr_render_job *job, uint32_t 
 {
     struct sr_error error = {0};
     struct sr_render_part *part;
+    struct sr_render_report report;
     struct sr_render_job own = *job;
     own.threads = 1 + (int)(begin % 3);
     own.tile = 3 + (int)(end % 14);
-    if (sr_render_samples(&own, (struct sr_render_range){begin, end}, &part, &error) != SR_OK)
+    if (sr_render_samples(&own, (struct sr_render_range){begin, end}, &part, &report, &error) != SR_OK)
         test_fail(__FILE__, __LINE__, "%u-%u: %s", begin, end, error.text);
     return part;
 }
@@ -166,6 +167,76 @@ TEST(any_partition_of_caustics_is_the_whole)
     expect_any_partition_is_whole("Integrator \"caustics\"\n" SOBOL FILM("rgb"), 0, false);
 }
 
+/* ---- parts that are interrupted ---- */
+
+struct stopper {
+    atomic_bool cancel;
+    int left; // units until it is set
+};
+
+static void stop(void *user, const struct sr_render_progress *p)
+{
+    struct stopper *s = user;
+    (void)p;
+    if (--s->left <= 0)
+        atomic_store(&s->cancel, true);
+}
+
+static void expect_resumed_parts_are_whole(const char *settings, uint32_t replicates)
+{
+    struct sr_import_result w = world(settings);
+    struct sr_render_job job = job_of(&w, replicates);
+    struct sr_error error = {0};
+    struct sr_film *whole;
+    struct sr_render_report report, uncut;
+    if (sr_render(&job, &whole, &uncut, &error) != SR_OK)
+        test_fail(__FILE__, __LINE__, "%s", error.text);
+    char path[512];
+    snprintf(path, sizeof path, "%s/part.srk", test_folder());
+    struct sr_render_part *all = part_of(&job, 0, 21), *part = NULL;
+    struct stopper stopper;
+    struct sr_render_keep keep = {.path = path, .identity = "samples 21-64\n", .interval_s = 0.001, .resumes = true};
+    job.keep = &keep;
+    job.progress = stop;
+    job.user = &stopper;
+    job.cancel = &stopper.cancel;
+    int stops = 0;
+    for (sr_status status = SR_CANCELLED; status == SR_CANCELLED; ++stops) {
+        stopper = (struct stopper){.left = 3 + stops};
+        job.tile = 3 + stops % 4;
+        job.threads = 1 + stops % 3;
+        status = sr_render_samples(&job, (struct sr_render_range){21, 64}, &part, &report, &error);
+        if (status != SR_OK && status != SR_CANCELLED)
+            test_fail(__FILE__, __LINE__, "%s", error.text);
+        EXPECT((status == SR_OK) == (part != NULL));
+    }
+    EXPECT(stops > 3 && report.kept.resumed_share > 0);
+    EXPECT(sr_render_part_add(all, part, &error) == SR_OK && sr_render_part_is_complete(all));
+    expect_same(sr_render_part_film(all), whole);
+    EXPECT_EQUAL_INT(sr_render_part_report(all)->paths, (long long)uncut.paths);
+    sr_render_part_destroy(part);
+    // a part that could not be written, and the checkpoint of another range
+    job.cancel = NULL;
+    part = part_of(&job, 21, 64);
+    EXPECT(sr_render_part_checkpoint(&job, part, &report, &error) == SR_OK);
+    sr_render_part_destroy(part);
+    EXPECT(sr_render_samples(&job, (struct sr_render_range){21, 64}, &part, &report, &error) == SR_OK && report.kept.resumed_share == 1);
+    sr_render_part_destroy(part);
+    keep.identity = "samples 21-60\n";
+    EXPECT(sr_render_samples(&job, (struct sr_render_range){21, 60}, &part, &report, &error) == SR_ERROR_INPUT && strstr(error.text, "samples"));
+    sr_render_forget(&keep);
+    sr_render_part_destroy(all);
+    sr_film_destroy(whole);
+    sr_import_result_free(&w);
+}
+
+TEST(interrupted_parts_go_on_to_the_same_sums)
+{
+    expect_resumed_parts_are_whole("Integrator \"path\"\n" SOBOL FILM("rgb"), 0);
+    expect_resumed_parts_are_whole("Integrator \"bdpt\"\n" SOBOL FILM("rgb"), 16);
+    expect_resumed_parts_are_whole("Integrator \"path\"\n" SOBOL FILM("spectral"), 0);
+}
+
 /* ---- what is refused ---- */
 
 static const char plain[] = "Integrator \"path\" \"integer maxdepth\" 2\nSampler \"sobol\" \"integer pixelsamples\" 10\n" FILM("rgb");
@@ -193,13 +264,14 @@ TEST(ranges_that_make_no_sense_are_refused)
     struct sr_render_job job = job_of(&w, 0);
     static const struct sr_render_range wrong[] = {{0, 0}, {5, 5}, {6, 5}, {0, 11}, {10, 11}};
     struct sr_render_part *part;
+    struct sr_render_report report;
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; ++i) {
         struct sr_error error = {0};
-        EXPECT(sr_render_samples(&job, wrong[i], &part, &error) == SR_ERROR_USAGE && !part);
+        EXPECT(sr_render_samples(&job, wrong[i], &part, &report, &error) == SR_ERROR_USAGE && !part);
     }
     struct sr_error error = {0};
     job.adaptive.is_on = true;
-    EXPECT(sr_render_samples(&job, (struct sr_render_range){0, 5}, &part, &error) == SR_ERROR_USAGE && strstr(error.text, "adaptive"));
+    EXPECT(sr_render_samples(&job, (struct sr_render_range){0, 5}, &part, &report, &error) == SR_ERROR_USAGE && strstr(error.text, "adaptive"));
     sr_import_result_free(&w);
 }
 
@@ -300,7 +372,8 @@ TEST(a_part_that_is_cancelled_is_none)
     atomic_bool cancel = true;
     job.cancel = &cancel;
     struct sr_render_part *part;
+    struct sr_render_report report;
     struct sr_error error = {0};
-    EXPECT(sr_render_samples(&job, (struct sr_render_range){0, 5}, &part, &error) == SR_CANCELLED && !part);
+    EXPECT(sr_render_samples(&job, (struct sr_render_range){0, 5}, &part, &report, &error) == SR_CANCELLED && !part);
     sr_import_result_free(&w);
 }
