@@ -74,6 +74,8 @@ static sr_status import(const char *path, const struct sr_import_options *option
         status = sr_fail(error, inner->status, "%s: %s", path, inner->text);
     }
     if (status == SR_OK)
+        sr_scene_tell_degenerate(result->scene, log);
+    if (status == SR_OK)
         status = sr_pbrt_settle_integrator(&b);
     return status;
 }

@@ -192,14 +192,6 @@ bool scene_alpha_accepts(const struct placed_shape *s, uint32_t primitive, sr_ve
 
 /* ---- building ---- */
 
-/* Primitives that no ray can meet are counted, so that nothing is lost in silence. */
-static void count_degenerate(struct sr_scene *scene, const struct placed_shape *s)
-{
-    uint32_t n = s->shape.model->primitive_count(s->shape.self);
-    for (uint32_t i = 0; i < n; ++i)
-        scene->counts.degenerate += !(s->shape.model->area(s->shape.self, i) > 0);
-}
-
 /* Pairs whose corners stand side by side in the indices; where some triangles stay alone, a list. */
 static const void *quads_of(struct sr_scene *scene, const struct sr_shape_mesh *m, size_t *stride)
 {
@@ -288,10 +280,8 @@ static void build_object(struct sr_scene *scene, struct object *object)
     object->embree = rtcNewScene(scene->device);
     rtcSetSceneFlags(object->embree, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(object->embree, RTC_BUILD_QUALITY_MEDIUM);
-    for (uint32_t i = 0; i < object->shape_count; ++i) {
-        count_degenerate(scene, &object->shapes[i]);
+    for (uint32_t i = 0; i < object->shape_count; ++i)
         attach(object->embree, make_geometry(scene, &object->shapes[i]), i);
-    }
 }
 
 static RTCGeometry make_moving(struct sr_scene *scene, struct instance *instance)

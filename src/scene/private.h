@@ -52,6 +52,7 @@ struct sr_scene {
     struct sr_array mover_defs;     // struct mover_def
     struct sr_array light_defs;     // struct sr_light
     struct sr_array material_list;  // const struct sr_material *, in the order of first use
+    struct sr_array degenerates;    // struct degenerate, in the order of description
     const struct object *world;
     const struct instance *instances; // by geometry number - world's shape count
     uint32_t first_instance;
@@ -74,6 +75,15 @@ struct mover_def {
     const struct sr_motion *motion;
 };
 
+/* Primitives of a shape that no ray meets. */
+struct degenerate {
+    struct sr_location where;
+    const char *model;
+    uint64_t count, without_area, too_large, not_finite; // of all; of those that no ray meets
+};
+
+/* Counted so that nothing is lost in silence. */
+void scene_count_degenerate(struct sr_scene *scene, const struct sr_shape_def *def);
 void scene_find_media(struct sr_scene *scene); // once rays can be cast
 void scene_build_embree(struct sr_scene *scene, int threads);
 

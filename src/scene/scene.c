@@ -36,6 +36,7 @@ void sr_scene_destroy(struct sr_scene *scene)
     sr_array_free(&scene->mover_defs);
     sr_array_free(&scene->light_defs);
     sr_array_free(&scene->material_list);
+    sr_array_free(&scene->degenerates);
     sr_arena_free(&scene->arena);
     sr_free(scene);
 }
@@ -217,6 +218,7 @@ static void place_shapes(struct sr_scene *scene, struct object *object, bool is_
         uint32_t n = def->shape.model->primitive_count(def->shape.self);
         bool is_mesh = def->shape.model == &sr_shape_trianglemesh;
         count_primitives(&scene->counts, def->shape, n);
+        scene_count_degenerate(scene, def);
         // a surface that neither scatters nor glows nor parts media is not there; nor is one without coverage
         if (n == 0 || is_invisible || (material_number == 0 && !has_light && !def->media))
             continue;

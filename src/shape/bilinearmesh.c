@@ -118,7 +118,7 @@ static sr_status prepare(void *self, const struct sr_shape_placement *placement,
                          struct sr_error *error)
 {
     struct sr_shape_patches *m = self;
-    const struct sr_mesh_arrays a = {"bilinearmesh", 4, &m->indices, &m->P, &m->N, NULL, &m->uv, &m->face_indices};
+    const struct sr_mesh_arrays a = {"bilinearmesh", 4, &m->indices, &m->P, &m->N, NULL, &m->uv, &m->face_indices, &m->left_out};
     sr_status status = sr_mesh_place(&a, placement, &m->flip_normals, arena, error);
     if (status != SR_OK)
         return status;

@@ -7,6 +7,8 @@
  * side is outside (M. Pharr, W. Jakob, G. Humphreys, Physically Based Rendering, 4th ed. 2023, section 6.5). */
 #include "shape/mesh.h"
 
+#include <string.h>
+
 static bool all_finite(const float *x, size_t count)
 {
     for (size_t i = 0; i < count; ++i) {
@@ -14,6 +16,41 @@ static bool all_finite(const float *x, size_t count)
             return false;
     }
     return true;
+}
+
+static bool is_finite_vertex(const struct sr_mesh_arrays *m, int32_t vertex)
+{
+    const struct sr_slice *const vectors[] = {m->P, m->N, m->S};
+    for (int i = 0; i < 3; ++i)
+        if (vectors[i] && vectors[i]->count && !sr_is_finite(((const sr_vec3 *)vectors[i]->data)[vertex]))
+            return false;
+    return !m->uv->count || all_finite((const float *)m->uv->data + 2 * vertex, 2);
+}
+
+/* Primitives with a vertex that is not all numbers are left out, and counted; such a vertex then is 0. The slices are the arena's own. */
+static uint32_t leave_out(const struct sr_mesh_arrays *m)
+{
+    int32_t *indices = (int32_t *)(uintptr_t)m->indices->data, *faces = (int32_t *)(uintptr_t)m->face_indices->data;
+    uint32_t n = m->indices->count / m->corners, kept = 0;
+    for (uint32_t i = 0; i < n; ++i) {
+        bool is_good = true;
+        for (uint32_t k = 0; k < m->corners; ++k)
+            is_good = is_good && is_finite_vertex(m, indices[i * m->corners + k]);
+        if (!is_good)
+            continue;
+        memmove(indices + kept * m->corners, indices + i * m->corners, m->corners * sizeof *indices);
+        if (m->face_indices->count)
+            faces[kept] = faces[i];
+        ++kept;
+    }
+    m->indices->count = kept * m->corners;
+    if (m->face_indices->count)
+        m->face_indices->count = kept;
+    sr_vec3 *P = (sr_vec3 *)(uintptr_t)m->P->data;
+    for (uint32_t i = 0; i < m->P->count; ++i)
+        if (!sr_is_finite(P[i]))
+            P[i] = (sr_vec3){0, 0, 0};
+    return n - kept;
 }
 
 static sr_status check_count(const struct sr_mesh_arrays *m, const char *what, const struct sr_slice *s,
@@ -54,10 +91,6 @@ static sr_status check(const struct sr_mesh_arrays *m, const struct sr_shape_pla
         status = check_count(m, "faceIndices", m->face_indices, corners / m->corners, "one for each face", error);
     if (status != SR_OK)
         return status;
-    if (!all_finite(m->P->data, 3 * (size_t)vertices) || !all_finite(m->N->data, 3 * (size_t)m->N->count) ||
-        (m->S && !all_finite(m->S->data, 3 * (size_t)m->S->count)) ||
-        !all_finite(m->uv->data, 2 * (size_t)m->uv->count))
-        return sr_fail(error, SR_ERROR_INPUT, "%s: \"P\", \"N\", \"S\" and \"uv\" must be finite numbers", m->name);
     if (!sr_transform_is_valid(&placement->object_to_world))
         return sr_fail(error, SR_ERROR_INPUT, "%s: the transform must be finite and invertible", m->name);
     return SR_OK;
@@ -111,19 +144,20 @@ sr_status sr_mesh_place(const struct sr_mesh_arrays *m, const struct sr_shape_pl
         return sr_fail(error, SR_ERROR_RESOURCE, "%s: no memory for %u vertices", m->name, m->P->count);
 
     double side = placement->reverse_orientation ? -1 : 1;
+    bool is_finite = all_finite(m->uv->data, 2 * (size_t)m->uv->count);
     for (uint32_t i = 0; i < m->P->count; ++i) {
         P[i] = place(t->m, ((const sr_vec3 *)m->P->data)[i], 1);
-        if (!sr_is_finite(P[i]))
-            return sr_fail(error, SR_ERROR_INPUT, "%s: vertex %u is not finite after the transform", m->name, i);
         if (N)
             N[i] = place_normal(t, ((const sr_vec3 *)m->N->data)[i], side);
         if (S)
             S[i] = place(t->m, ((const sr_vec3 *)m->S->data)[i], 0);
+        is_finite = is_finite && sr_is_finite(P[i]) && (!N || sr_is_finite(N[i])) && (!S || sr_is_finite(S[i]));
     }
     m->P->data = P;
     m->N->data = N;
     if (m->S)
         m->S->data = S;
+    *m->left_out = is_finite ? 0 : leave_out(m);
     *flip_normals = placement->reverse_orientation != sr_transform_swaps_handedness(t);
     return SR_OK;
 }

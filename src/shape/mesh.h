@@ -11,9 +11,11 @@ struct sr_mesh_arrays {
     const char *name; // of the shape, for messages
     uint32_t corners; // vertices a primitive
     struct sr_slice *indices, *P, *N, *S, *uv, *face_indices;
+    uint32_t *left_out; // primitives with numbers that are not finite
 };
 
-/* Checks all, and replaces all by copies: P, N and S in the space of placement. */
+/* Checks all, and replaces all by copies: P, N and S in the space of placement. Primitives with numbers that are not finite are
+ * left out. */
 sr_status sr_mesh_place(const struct sr_mesh_arrays *m, const struct sr_shape_placement *placement, bool *flip_normals,
                         struct sr_arena *arena, struct sr_error *error);
 

@@ -93,6 +93,7 @@ struct sr_shape_mesh {
     struct sr_slice uv;           // sr_vec2 [1], or empty
     struct sr_slice face_indices; // int32, one a triangle, or empty
     bool flip_normals;            // derived: outside is on the other side of the winding
+    uint32_t left_out;            // derived: triangles with numbers that are not finite
     uint32_t pairs;               // derived: the first 2 pairs triangles are pairs, as sr_shape_pair_triangles leaves them
     const uint8_t *turns;         // derived: NULL, or of triangle i turns[i & turn_mask]: the place at which its first corner stands
     uint32_t turn_mask;
@@ -103,6 +104,7 @@ struct sr_shape_patches {
     struct sr_slice P, N, uv, face_indices;
     bool flip_normals;
     const char *emission_filename; // not looked at
+    uint32_t left_out;    // derived: patches with numbers that are not finite
     const uint8_t *kinds; // derived, one a patch: what it is geometrically, which chooses how it is sampled
 };
 

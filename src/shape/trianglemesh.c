@@ -34,7 +34,7 @@ static sr_status prepare(void *self, const struct sr_shape_placement *placement,
                          struct sr_error *error)
 {
     struct sr_shape_mesh *m = self;
-    const struct sr_mesh_arrays a = {"trianglemesh", 3, &m->indices, &m->P, &m->N, &m->S, &m->uv, &m->face_indices};
+    const struct sr_mesh_arrays a = {"trianglemesh", 3, &m->indices, &m->P, &m->N, &m->S, &m->uv, &m->face_indices, &m->left_out};
     return sr_mesh_place(&a, placement, &m->flip_normals, arena, error);
 }
 

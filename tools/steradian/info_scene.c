@@ -48,6 +48,7 @@ static double imaging_ratio(const struct sr_film_settings *f)
 static void print_scene(const char *path, const struct sr_import_result *r, unsigned warnings)
 {
     struct sr_scene_counts c = sr_scene_count(r->scene);
+    uint64_t duplicates = sr_scene_count_duplicates(r->scene);
     struct kinds lights = count_lights(r->scene);
     struct sr_box box = sr_scene_bounds(r->scene);
     const struct sr_film_settings *f = &r->film;
@@ -70,8 +71,11 @@ static void print_scene(const char *path, const struct sr_import_result *r, unsi
     printf("\n  surfaces     %llu triangles, %llu patches, %llu quadrics, %llu curves; %llu instances of %llu objects\n",
            (unsigned long long)c.triangles, (unsigned long long)c.patches, (unsigned long long)c.quadrics, (unsigned long long)c.curves,
            (unsigned long long)c.instances, (unsigned long long)c.objects);
-    if (c.degenerate)
-        printf("               %llu primitives without area were left out\n", (unsigned long long)c.degenerate);
+    if (c.degenerate || c.too_large || c.not_finite)
+        printf("               never met: %llu primitives without area, %llu too large, %llu not finite\n", (unsigned long long)c.degenerate,
+               (unsigned long long)c.too_large, (unsigned long long)c.not_finite);
+    if (duplicates)
+        printf("               %llu triangles have the corners of another one\n", (unsigned long long)duplicates);
     printf("  materials    %llu\n", (unsigned long long)c.materials);
     if (sr_box_is_empty(box))
         printf("  bounds       nothing there\n");
@@ -106,7 +110,7 @@ static int print_scene_json(const char *path, const struct sr_import_result *r, 
                             json_integer((json_int_t)kinds.count[i]));
     json_t *j = json_pack(
         "{s:o, s:s, s:s, s:i, s:s, s:{s:i, s:i, s:i, s:i, s:i, s:i, s:s, s:s, s:o, s:o}, s:{s:s, s:o, s:o, s:s}, s:s,"
-        " s:{s:s, s:I, s:I}, s:{s:o, s:o, s:s}, s:o, s:{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I}, s:o, s:{s:I, s:I, "
+        " s:{s:s, s:I, s:I}, s:{s:o, s:o, s:s}, s:o, s:{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I}, s:o, s:{s:I, s:I, "
         "s:I}, s:{s:o, s:o}}",
         "file", command_json_text(path), "kind", "scene", "hash", hash, "warnings", (int)warnings, "sensor",
         r->sensor.model->name, "film", "width", (int)f->width, "height", (int)f->height, "x0", (int)f->x0, "x1",
@@ -120,7 +124,8 @@ static int print_scene_json(const char *path, const struct sr_import_result *r, 
         command_json_number((double)SR_LAMBDA_MAX), "unit", "nm", "lights", lights, "counts", "lights",
         (json_int_t)c.lights, "triangles", (json_int_t)c.triangles, "patches", (json_int_t)c.patches, "quadrics",
         (json_int_t)c.quadrics, "curves", (json_int_t)c.curves, "instances", (json_int_t)c.instances, "objects", (json_int_t)c.objects, "materials",
-        (json_int_t)c.materials, "primitives_without_area", (json_int_t)c.degenerate, "bounds",
+        (json_int_t)c.materials, "primitives_without_area", (json_int_t)c.degenerate, "primitives_too_large", (json_int_t)c.too_large,
+        "primitives_not_finite", (json_int_t)c.not_finite, "duplicate_triangles", (json_int_t)sr_scene_count_duplicates(r->scene), "bounds",
         bounds_json(sr_scene_bounds(r->scene)), "memory", "geometry_B", (json_int_t)c.geometry_B, "acceleration_B",
         (json_int_t)c.acceleration_B, "peak_B", (json_int_t)sr_peak_memory_B(), "time", "read_s",
         command_json_number(r->read_s), "build_s", command_json_number(c.build_s));

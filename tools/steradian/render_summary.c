@@ -81,14 +81,15 @@ void render_print_summary(const struct rendering *r, const struct sr_film *film,
                 "scene: %llu triangles, %llu patches, %llu quadrics, %llu curves, %llu instances, %llu lights, %llu materials; read "
                 "%.2f s, built %.2f s\n"
                 "memory: geometry %.1f MiB, acceleration %.1f MiB, peak %.1f MiB; rays %llu, shadow rays %llu, "
-                "vertices %llu; left out: %llu primitives without area\n",
+                "vertices %llu; never met: %llu primitives without area, %llu too large, %llu not finite; %llu duplicate triangles\n",
                 (unsigned long long)counts->triangles, (unsigned long long)counts->patches,
                 (unsigned long long)counts->quadrics, (unsigned long long)counts->curves, (unsigned long long)counts->instances,
                 (unsigned long long)counts->lights, (unsigned long long)counts->materials, r->scene->read_s,
                 counts->build_s, (double)counts->geometry_B / 1048576, (double)counts->acceleration_B / 1048576,
                 (double)sr_peak_memory_B() / 1048576, (unsigned long long)report->rays,
                 (unsigned long long)report->shadow_rays, (unsigned long long)report->vertices,
-                (unsigned long long)counts->degenerate);
+                (unsigned long long)counts->degenerate, (unsigned long long)counts->too_large, (unsigned long long)counts->not_finite,
+                (unsigned long long)sr_scene_count_duplicates(r->scene->scene));
 }
 
 /* The settings that made the picture, enough to make it again. */
@@ -120,7 +121,7 @@ int render_print_json(const struct rendering *r, const struct sr_film *film, con
         json_array_append_new(outputs, command_json_text(render_output_name(r->arguments, r->scene, i)));
     json_t *j = json_pack(
         "{s:s, s:s, s:o, s:b, s:o, s:o, s:{s:f, s:f, s:f, s:f, s:f, s:I}, s:{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, "
-        "s:I, s:I, s:I, s:I}, s:o, s:o}",
+        "s:I, s:I, s:I, s:I, s:I, s:I, s:I}, s:o, s:o}",
         "version", SR_VERSION, "scene_hash", hash, "outputs", outputs, "complete", report->is_complete, "settings",
         settings_json(r, film), "mean_luminance", command_json_measured(&L), "time", "read_s", r->scene->read_s, "build_s",
         counts.build_s, "render_s", report->render_s, "paths_per_s", rate((double)report->paths, report->render_s),
@@ -129,7 +130,9 @@ int render_print_json(const struct rendering *r, const struct sr_film *film, con
         (json_int_t)counts.patches, "quadrics", (json_int_t)counts.quadrics, "curves", (json_int_t)counts.curves, "lights", (json_int_t)counts.lights,
         "paths", (json_int_t)report->paths, "rays", (json_int_t)report->rays, "shadow_rays",
         (json_int_t)report->shadow_rays, "vertices", (json_int_t)report->vertices, "dropped_samples",
-        (json_int_t)report->dropped, "primitives_without_area", (json_int_t)counts.degenerate, "doubtful_pixels",
+        (json_int_t)report->dropped, "primitives_without_area", (json_int_t)counts.degenerate, "primitives_too_large",
+        (json_int_t)counts.too_large, "primitives_not_finite", (json_int_t)counts.not_finite, "duplicate_triangles",
+        (json_int_t)sr_scene_count_duplicates(r->scene->scene), "doubtful_pixels",
         (json_int_t)sr_film_doubtful_pixels(film), "irradiance", meters, "relative_error", command_json_number(relative_error(r, film)));
     const struct sr_render_kept *kept = &report->kept;
     if (j && r->keep)

@@ -42,6 +42,7 @@ struct adder {
     uint32_t emission_of; // area_light1 of
     const struct sr_light_emission *emission;
     const struct sr_media *media; // of the last shape that had some
+    const char *file, *kept_file; // of the last shape; its name in the scene's arena
 };
 
 static bool is_ply(const struct sr_pbrt_shape *s)
@@ -317,6 +318,18 @@ static sr_status make_curves(struct adder *a, const struct sr_pbrt_shape *s, str
     return sr_pbrt_curves(a->b, s, &placement, shape, run);
 }
 
+/* For messages that come when the description has gone. */
+static struct sr_location where_of(struct adder *a, const struct sr_pbrt_shape *s)
+{
+    struct sr_location where = s->entity.where;
+    if (where.file && where.file != a->file) {
+        a->file = where.file;
+        a->kept_file = sr_arena_string(a->b->arena, where.file);
+    }
+    where.file = where.file ? a->kept_file : NULL;
+    return where;
+}
+
 /* Adds one shape, or a run of curves: *run is how many directives it is made of. */
 static sr_status add_shape(struct adder *a, const struct sr_pbrt_shape *s, struct loaded *l, size_t *run)
 {
@@ -324,7 +337,7 @@ static sr_status add_shape(struct adder *a, const struct sr_pbrt_shape *s, struc
     struct sr_shape shapes[4];
     int count = 0;
     struct common common = {{NULL, NULL}};
-    struct sr_shape_def def = {.object = s->object1 ? a->objects[s->object1 - 1] : (sr_object_id){0}};
+    struct sr_shape_def def = {.where = where_of(a, s), .object = s->object1 ? a->objects[s->object1 - 1] : (sr_object_id){0}};
     *run = 1;
     sr_status status = find_media(a, s, &def.media);
     if (status == SR_OK)

@@ -440,7 +440,7 @@ static sr_status try_mesh(struct sr_shape_mesh m, const char *word)
 
 TEST(wrong_meshes_are_refused_with_what_was_expected)
 {
-    sr_vec3 P[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, bad[3] = {{0, 0, 0}, {NAN, 0, 0}, {0, 1, 0}};
+    sr_vec3 P[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     int32_t good[3] = {0, 1, 2}, high[3] = {0, 1, 3}, low[3] = {0, -1, 2}, four[4] = {0, 1, 2, 0};
     EXPECT(try_mesh((struct sr_shape_mesh){.indices = SLICE(good), .P = SLICE(P)}, "") == SR_OK);
     EXPECT(try_mesh((struct sr_shape_mesh){.P = SLICE(P)}, "") == SR_OK);
@@ -448,7 +448,6 @@ TEST(wrong_meshes_are_refused_with_what_was_expected)
            SR_ERROR_INPUT);
     EXPECT(try_mesh((struct sr_shape_mesh){.indices = SLICE(low), .P = SLICE(P)}, "index -1") == SR_ERROR_INPUT);
     EXPECT(try_mesh((struct sr_shape_mesh){.indices = SLICE(four), .P = SLICE(P)}, "multiple of 3") == SR_ERROR_INPUT);
-    EXPECT(try_mesh((struct sr_shape_mesh){.indices = SLICE(good), .P = SLICE(bad)}, "finite") == SR_ERROR_INPUT);
     EXPECT(try_mesh((struct sr_shape_mesh){.indices = SLICE(good)}, "\"P\"") == SR_ERROR_INPUT);
     EXPECT(try_mesh((struct sr_shape_mesh){.indices = SLICE(good), .P = SLICE(P), .N = {P, 2}}, "expected 3") ==
            SR_ERROR_INPUT);
@@ -456,6 +455,23 @@ TEST(wrong_meshes_are_refused_with_what_was_expected)
     struct sr_error error = {0};
     struct sr_shape_placement p = here();
     EXPECT(sr_shape_sphere.prepare(&s, &p, &test_arena, &error) == SR_ERROR_INPUT);
+}
+
+TEST(triangles_with_numbers_that_are_not_finite_are_left_out)
+{
+    sr_vec3 P[5] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {NAN, 0, 0}, {1, 1, 0}};
+    sr_vec2 uv[5] = {{0, 0}, {1, 0}, {0, 1}, {0, 0}, {0, INFINITY}};
+    int32_t indices[12] = {0, 3, 2, 0, 1, 2, 1, 4, 2, 2, 1, 0}, faces[4] = {5, 6, 7, 8};
+    struct sr_shape_mesh m = {.indices = SLICE(indices), .P = SLICE(P), .uv = SLICE(uv), .face_indices = SLICE(faces)};
+    struct sr_error error = {0};
+    struct sr_shape_placement p = here();
+    EXPECT_EQUAL_INT(sr_shape_trianglemesh.prepare(&m, &p, &test_arena, &error), SR_OK);
+    EXPECT_EQUAL_INT(m.left_out, 2);
+    EXPECT_EQUAL_INT(m.indices.count, 6);
+    EXPECT(memcmp(m.indices.data, (int32_t[]){0, 1, 2, 2, 1, 0}, 24) == 0);
+    EXPECT(m.face_indices.count == 2 && memcmp(m.face_indices.data, (int32_t[]){6, 8}, 8) == 0);
+    for (int i = 0; i < 5; ++i)
+        EXPECT(sr_is_finite(((const sr_vec3 *)m.P.data)[i]));
 }
 
 /* Parallelograms become triangles of the same points, uv and normals; others stay. */
