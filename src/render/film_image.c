@@ -97,6 +97,39 @@ static sr_status create(const struct sr_film *film, const char **names, const ch
     return SR_OK;
 }
 
+struct filling {
+    const struct sr_film *film;
+    struct sr_image *out;
+    bool with_error, is_replicated;
+};
+
+static void fill_row(void *context, uint64_t row)
+{
+    const struct filling *f = context;
+    const struct sr_film *film = f->film;
+    uint32_t y = (uint32_t)row, buckets = film->settings.buckets;
+    for (uint32_t x = 0; x < film->width; ++x) {
+        float *p = f->out->floats + sr_image_index(f->out, x, y);
+        double mean[3], se[3];
+        sr_film_pixel_mean(film, x, y, mean);
+        for (int c = 0; c < 3; ++c)
+            *p++ = (float)mean[c];
+        size_t i = (size_t)y * film->width + x;
+        if (f->with_error) {
+            sr_film_pixel_error(film, x, y, !f->is_replicated, se);
+            for (int c = 0; c < 3; ++c)
+                *p++ = (float)se[c];
+            *p++ = (float)film->pixels[i].n;
+        }
+        if (film->has_aov)
+            p = put_auxiliary(p, &film->aov[i]);
+        if (film->has_aov && film->settings.is_gbuffer)
+            p = put_gbuffer(p, &film->aov[i]);
+        for (uint32_t k = 0; k < buckets; ++k)
+            *p++ = (float)sr_film_bucket(film, x, y, k);
+    }
+}
+
 sr_status sr_render_image(const struct sr_film *film, bool with_error, bool is_replicated, struct sr_image **image, struct sr_error *error)
 {
     enum { MOST = PICTURE + ERRORS + GBUFFER };
@@ -133,26 +166,7 @@ sr_status sr_render_image(const struct sr_film *film, bool with_error, bool is_r
         for (int k = 0; k < 2; ++k)
             out->chromaticities[i][k] = space->xy[i][k];
 
-    for (uint32_t y = 0; y < film->height; ++y)
-        for (uint32_t x = 0; x < film->width; ++x) {
-            float *p = out->floats + sr_image_index(out, x, y);
-            double mean[3], se[3];
-            sr_film_pixel_mean(film, x, y, mean);
-            for (int c = 0; c < 3; ++c)
-                *p++ = (float)mean[c];
-            size_t i = (size_t)y * film->width + x;
-            if (with_error) {
-                sr_film_pixel_error(film, x, y, !is_replicated, se);
-                for (int c = 0; c < 3; ++c)
-                    *p++ = (float)se[c];
-                *p++ = (float)film->pixels[i].n;
-            }
-            if (film->has_aov)
-                p = put_auxiliary(p, &film->aov[i]);
-            if (film->has_aov && is_gbuffer)
-                p = put_gbuffer(p, &film->aov[i]);
-            for (uint32_t k = 0; k < buckets; ++k)
-                *p++ = (float)sr_film_bucket(film, x, y, k);
-        }
+    struct filling filling = {.film = film, .out = out, .with_error = with_error, .is_replicated = is_replicated};
+    sr_parallel_for(sr_thread_count(), film->height, fill_row, &filling);
     return SR_OK;
 }

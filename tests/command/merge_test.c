@@ -182,19 +182,19 @@ TEST(options_of_parts_that_make_no_sense_are_told)
     } wrong[] = {
         {"--sample-range 0-4 -o a.exr", "-o FILE.srp"},
         {"--sample-range 0-4", "-o FILE.srp"},
-        {"-o a.srp", "a.srp: a part of a picture needs --sample-range or --part"},
-        {"--sample-range 4-4 -o a.srp", "A < B was expected"},
-        {"--sample-range 4 -o a.srp", "A-B"},
-        {"--sample-range -1-4 -o a.srp", "A-B"},
-        {"--sample-range 20-23 -o a.srp", "samples 0-22 of each pixel were expected"},
-        {"--part 0/4 -o a.srp", "1 <= K <= N"},
-        {"--part 5/4 -o a.srp", "1 <= K <= N"},
-        {"--part 1/23 -o a.srp", "22 parts at most"},
-        {"--part 1/2 --sample-range 0-4 -o a.srp", "once"},
-        {"--part 1/2 --adaptive -o a.srp", "adaptive"},
-        {"--part 1/2 --error 1% -o a.srp", "adaptive"},
-        {"--part 1/2 --write-partial 5 -o a.srp", "--write-partial"},
-        {"--part 1/2 --irradiance 0,0,0,0,1,0 -o a.srp", "--irradiance"},
+        {"-o wrong.srp", "wrong.srp: a part of a picture needs --sample-range or --part"},
+        {"--sample-range 4-4 -o wrong.srp", "A < B was expected"},
+        {"--sample-range 4 -o wrong.srp", "A-B"},
+        {"--sample-range -1-4 -o wrong.srp", "A-B"},
+        {"--sample-range 20-23 -o wrong.srp", "samples 0-22 of each pixel were expected"},
+        {"--part 0/4 -o wrong.srp", "1 <= K <= N"},
+        {"--part 5/4 -o wrong.srp", "1 <= K <= N"},
+        {"--part 1/23 -o wrong.srp", "22 parts at most"},
+        {"--part 1/2 --sample-range 0-4 -o wrong.srp", "once"},
+        {"--part 1/2 --adaptive -o wrong.srp", "adaptive"},
+        {"--part 1/2 --error 1% -o wrong.srp", "adaptive"},
+        {"--part 1/2 --write-partial 5 -o wrong.srp", "--write-partial"},
+        {"--part 1/2 --irradiance 0,0,0,0,1,0 -o wrong.srp", "--irradiance"},
     };
     for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; ++i) {
         char text[400];
@@ -202,8 +202,8 @@ TEST(options_of_parts_that_make_no_sense_are_told)
         EXPECT_SAYS(run_expecting(2, text)->err, wrong[i].told);
     }
     EXPECT_SAYS(run_expecting(2, "merge -o a.exr")->err, "parts of a picture were expected");
-    EXPECT_SAYS(run_expecting(2, "merge a.srp")->err, "-o FILE");
-    EXPECT_SAYS(run_expecting(2, "merge a.srp -o a.jpg")->err, "a.jpg");
-    EXPECT_SAYS(run_expecting(4, "merge a.srp -o no/such/folder.exr")->err, "no/such/folder.exr");
-    EXPECT_EQUAL_INT(count_files("a.srp"), 0);
+    EXPECT_SAYS(run_expecting(2, "merge wrong.srp")->err, "-o FILE");
+    EXPECT_SAYS(run_expecting(2, "merge wrong.srp -o a.jpg")->err, "a.jpg");
+    EXPECT_SAYS(run_expecting(4, "merge wrong.srp -o no/such/folder.exr")->err, "no/such/folder.exr");
+    EXPECT_EQUAL_INT(count_files("wrong.srp"), 0);
 }

@@ -95,7 +95,8 @@ enum { MOST_SPP = 1 << 16 }; // where --error or --time says how many are needed
  * progress, partial pictures and Ctrl-C need not wait. The bytes of the picture do not depend on it. */
 static int choose_tile(const struct render_arguments *a, const struct sr_import_result *scene)
 {
-    double unit_samples = 1 << 17, blocks = a->replicates ? (double)a->replicates : 4;
+    // where paths from the lights bring light to the picture, a unit must end before a checkpoint can be written
+    double unit_samples = scene->integrator.model->splats ? 1 << 15 : 1 << 17, blocks = a->replicates ? (double)a->replicates : 4;
     double side = sqrt(unit_samples * blocks / scene->spp);
     return a->tile ? (int)a->tile : side < 1 ? 1 : side > 16 ? 16 : (int)side;
 }
