@@ -297,7 +297,7 @@ static sr_status take(struct sr_keeper *k, const struct sr_store_in *in, const c
     if (k->part && sr_part_get(in, path, k->part, error) != SR_OK)
         return error->status;
     k->pass = p->pass;
-    k->is_resumed = true;
+    k->kept.is_resumed = true;
     k->kept.resumed_share = p->share;
     *report = (struct sr_render_report){.render_s = p->render_s, .paths = p->paths, .rays = p->rays, .shadow_rays = p->shadow_rays, .vertices = p->vertices,
                                         .dropped = p->dropped, .dropped_x = p->first_dropped[0], .dropped_y = p->first_dropped[1],

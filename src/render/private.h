@@ -112,7 +112,7 @@ struct sr_keeper {
     uint32_t *counts[2];                  // NULL, or of each pixel: what an adaptive render has settled
     struct sr_render_part *part;          // NULL, or what takes the sums; films[0] then takes splats and counts blocks
     uint32_t pass;                        // that is under way, or comes next
-    bool is_resumed, is_complete;         // after sr_keeper_resume; complete: films[0] is the picture
+    bool is_complete;                     // after sr_keeper_resume: films[0] is the picture
     bool loses_file;                      // what is in the file is damaged: it does not become the previous generation
     struct sr_film *copy;                 // of the film that is being rendered
     char told[1024];                      // the last failure that has been told

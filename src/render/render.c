@@ -345,7 +345,7 @@ sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render
     run.trees = sr_arena_alloc(&arena, (size_t)threads * sizeof *run.trees);
     uint32_t buckets = run.picture.response.buckets;
     run.buckets = buckets ? sr_arena_alloc(&arena, (size_t)threads * run.tile * run.tile * buckets * sizeof *run.buckets) : NULL;
-    bool is_resumed = pass->keeper && pass->keeper->is_resumed;
+    bool is_resumed = pass->keeper && pass->keeper->kept.is_resumed;
     size_t pixels = (size_t)pass->film->width * pass->film->height;
     run.had = is_resumed ? sr_arena_alloc(&arena, pixels * sizeof *run.had) : NULL;
     double *tree_buckets = buckets ? sr_arena_alloc(&arena, (size_t)threads * SR_BLOCK_TREE_NODES * buckets * sizeof *tree_buckets) : NULL;

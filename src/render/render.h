@@ -78,6 +78,7 @@ struct sr_render_report {
     struct sr_render_kept {
         uint32_t written, failed; // checkpoints
         bool is_behind;           // the last one that was tried is not on disk
+        bool is_resumed;          // the render began with a checkpoint
         double stall_s, write_s;  // workers waited, the writer worked
         double resumed_share;     // [1] of the work that was there already; 0: a new render
     } kept;

@@ -206,7 +206,7 @@ static int render_scene(const struct render_arguments *a, const struct sr_import
     if (!code && render_check_memory(&job, NULL, &error) != SR_OK)
         code = command_fail("render", &error);
     if (!code) {
-        render_defer_interrupts();
+        render_catch_interrupts();
         struct sr_film *film;
         struct sr_render_report report;
         sr_render(&job, &film, &report, &error);
@@ -224,7 +224,7 @@ static int run(int argc, char **argv)
     if (command_tells_estimators(argc, argv))
         return 0;
     render_catch_requests();
-    render_catch_interrupts();
+    render_end_by_interrupts();
     struct render_arguments a;
     int code = render_parse(argc, argv, &a);
     if (!code && a.output_count && !a.has_pixel)

@@ -49,7 +49,7 @@ int render_keep_end(struct render_keeping *k, const struct sr_render_job *job, c
         return SR_ERROR_RESOURCE;
     }
     if (report->is_complete) {
-        if (report->kept.written || keep->resumes)
+        if (report->kept.written || report->kept.is_resumed)
             sr_render_forget(keep);
         return k->is_asked_for && report->kept.is_behind ? SR_ERROR_RESOURCE : 0;
     }

@@ -111,15 +111,16 @@ void render_catch_requests(void)
     catch (SIGUSR1, on_request);
 }
 
-void render_catch_interrupts(void)
+void render_end_by_interrupts(void)
 {
     catch (SIGINT, on_interrupt);
     catch (SIGTERM, on_interrupt);
 }
 
-void render_defer_interrupts(void)
+void render_catch_interrupts(void)
 {
     atomic_store(&is_deferred, true);
+    render_end_by_interrupts();
 }
 
 int render_interrupt_exit(void)

@@ -106,7 +106,7 @@ static int render_and_write(struct rendering *r, struct render_keeping *keeping,
     struct sr_error error = {0};
     struct sr_render_part *part;
     struct sr_render_report report;
-    render_defer_interrupts();
+    render_catch_interrupts();
     sr_status status = sr_render_samples(r->job, r->range, &part, &report, &error);
     if (r->on_terminal)
         fputs("\r\033[K", stderr);
