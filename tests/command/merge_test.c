@@ -44,6 +44,11 @@ TEST(merged_files_are_those_of_one_render)
     expect_same_file("whole.pfm", "merged.pfm");
     expect_same_file("whole.hdr", "merged.hdr");
     run_expecting(0, "merge c.srp a.srp -q -o larger.srp");
+    EXPECT_SAYS(run_expecting(0, "info larger.srp")->out, "samples 0-7, 8-22 of 0-22 of each pixel");
+    json_t *j = json_of(run_expecting(0, "info larger.srp --json"));
+    EXPECT_EQUAL_INT(json_array_size(json_object_get(j, "samples")), 2);
+    EXPECT_EQUAL_INT(json_integer_value(json_object_get(j, "spp")), 22);
+    json_decref(j);
     run_expecting(0, "merge b.srp larger.srp -q -o twice.exr");
     expect_same_file("whole.exr", "twice.exr");
     EXPECT_EQUAL_INT(count_files(".part-"), 0);

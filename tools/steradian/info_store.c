@@ -25,7 +25,8 @@ static json_t *settings_json(const char *identity)
     return settings;
 }
 
-static void print(const char *path, const struct sr_store_in *in, const char *identity, const struct sr_render_progress_kept *p, const char *date)
+static void print(const char *path, const struct sr_store_in *in, const struct sr_render_part *part, const char *identity, const struct sr_render_progress_kept *p,
+                  const char *date)
 {
     const char *name;
     size_t size;
@@ -33,6 +34,11 @@ static void print(const char *path, const struct sr_store_in *in, const char *id
     if (p)
         printf("  %.2f %% of the work in %.1f s; written %s\n  %llu paths, %llu rays, %llu shadow rays, %llu samples were not finite\n", 100 * p->share, p->render_s,
                date, (unsigned long long)p->paths, (unsigned long long)p->rays, (unsigned long long)p->shadow_rays, (unsigned long long)p->dropped);
+    struct sr_render_range r;
+    for (size_t i = 0; part && sr_render_part_range(part, i, &r); ++i)
+        printf("%s %u-%u", i ? "," : "  samples", r.begin, r.end);
+    if (part)
+        printf(" of 0-%u of each pixel\n", sr_render_part_spp(part));
     printf("\n  %-24s %12s\n", "section", "bytes");
     for (uint32_t i = 0; sr_store_section(in, i, &name, &size); ++i)
         printf("  %-24s %12zu\n", name, size);
@@ -42,13 +48,22 @@ static void print(const char *path, const struct sr_store_in *in, const char *id
         printf("  %-24.*s %.*s\n", (int)strcspn(q, " \n"), q, (int)strcspn(q + strcspn(q, " \n"), "\n"), q + strcspn(q, " \n"));
 }
 
-static int print_json(const char *path, const struct sr_store_in *in, const char *identity, const struct sr_render_progress_kept *p, const char *date)
+static int print_json(const char *path, const struct sr_store_in *in, const struct sr_render_part *part, const char *identity,
+                      const struct sr_render_progress_kept *p, const char *date)
 {
     json_t *j = json_pack("{s:o, s:s}", "file", command_json_text(path), "kind", sr_store_kind(in));
     if (j && p)
         json_object_set_new(j, "progress", json_pack("{s:f, s:f, s:s, s:I, s:I, s:I, s:I}", "share", p->share, "render_s", p->render_s, "written", date, "paths",
                                                      (json_int_t)p->paths, "rays", (json_int_t)p->rays, "shadow_rays", (json_int_t)p->shadow_rays,
                                                      "dropped_samples", (json_int_t)p->dropped));
+    json_t *samples = part ? json_array() : NULL;
+    struct sr_render_range r;
+    for (size_t i = 0; part && sr_render_part_range(part, i, &r); ++i)
+        json_array_append_new(samples, json_pack("[I, I]", (json_int_t)r.begin, (json_int_t)r.end));
+    if (j && part) {
+        json_object_set_new(j, "samples", samples);
+        json_object_set_new(j, "spp", json_integer(sr_render_part_spp(part)));
+    }
     if (j && identity)
         json_object_set_new(j, "settings", settings_json(identity));
     return command_print_json("info", j);
@@ -60,6 +75,11 @@ int info_store(const struct info_arguments *a)
     struct sr_store_in *in;
     if (sr_store_open(a->path, NULL, &in, &error) != SR_OK)
         return command_fail("info", &error);
+    struct sr_render_part *part = NULL;
+    if (strcmp(sr_store_kind(in), "part") == 0 && sr_render_part_read(a->path, &part, &error) != SR_OK) {
+        sr_store_close(in);
+        return command_fail("info", &error);
+    }
     struct sr_render_progress_kept p;
     bool has_progress = sr_render_checkpoint_tells(in, &p);
     size_t size;
@@ -75,9 +95,10 @@ int info_store(const struct info_arguments *a)
     }
     int code = 0;
     if (a->json)
-        code = print_json(a->path, in, identity, has_progress ? &p : NULL, date);
+        code = print_json(a->path, in, part, identity, has_progress ? &p : NULL, date);
     else
-        print(a->path, in, identity, has_progress ? &p : NULL, date);
+        print(a->path, in, part, identity, has_progress ? &p : NULL, date);
     sr_store_close(in);
+    sr_render_part_destroy(part);
     return code;
 }
