@@ -5,7 +5,7 @@
  *   paths/s of one thread and of all threads, rays/s, the efficiency of all threads, and that of rays alone (what the
  *   machine gives: caches and clocks are shared),
  *   ray-replay efficiency eta = (time of the bare ray caster for the very rays of the render) / (time of the render),
- *   time to read, to build the acceleration structure, peak memory.
+ *   time to read, to build the acceleration structure, from nothing to a first sample of each pixel; peak memory.
  * Each case runs in a process of its own, so that its peak memory is its own. --bsdf times the scattering models instead. */
 #include "bsdf_bench.h"
 #include "scale_bench.h"
@@ -86,8 +86,28 @@ static double timed_replay(const struct sr_scene *scene, const struct sr_ray_log
     return sr_clock_s() - start;
 }
 
+static struct sr_render_job job_of(const struct sr_import_result *scene, uint32_t seed)
+{
+    return (struct sr_render_job){
+        .scene = scene->scene, .sensor = scene->sensor, .filter = scene->filter, .integrator = scene->integrator, .film = scene->film,
+        .sampler = scene->sampler, .seed = seed, .spp = scene->spp, .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
+        .jitter_pixel = true, .jitter_lambda = true,
+    };
+}
+
+/* From nothing to one sample of each pixel. */
+static double time_to_first_pixel(const struct sr_render_job *job, double start_s)
+{
+    struct sr_render_job first = *job;
+    struct sr_render_report report;
+    first.spp = 1;
+    timed_render(&first, sr_thread_count(), &report);
+    return sr_clock_s() - start_s;
+}
+
 static int run_case(const struct settings *s, const char *name, const char *path)
 {
+    double start_s = sr_clock_s();
     struct sr_import_options options = {.spp = s->spp, .width = s->size, .height = s->size};
     struct sr_log log = {.write = warn};
     struct sr_error error = {0};
@@ -97,11 +117,8 @@ static int run_case(const struct settings *s, const char *name, const char *path
         return 1;
     }
     struct sr_scene_counts counts = sr_scene_count(scene.scene);
-    struct sr_render_job job = {
-        .scene = scene.scene, .sensor = scene.sensor, .filter = scene.filter, .integrator = scene.integrator, .film = scene.film,
-        .sampler = scene.sampler, .seed = s->seed, .spp = scene.spp, .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
-        .jitter_pixel = true, .jitter_lambda = true,
-    };
+    struct sr_render_job job = job_of(&scene, s->seed);
+    double first_pixel_s = time_to_first_pixel(&job, start_s);
     struct sr_render_report report;
     timed_render(&job, 1, &report); // warms the caches, and tells how many rays there are
     uint64_t peak_B = sr_peak_memory_B();
@@ -126,10 +143,10 @@ static int run_case(const struct settings *s, const char *name, const char *path
     double n_rays = (double)(report.rays + report.shadow_rays);
     printf("{\"case\": \"%s\", \"width\": %d, \"height\": %d, \"spp\": %u, \"runs\": %d, \"spread\": %.3f, \"paths_per_s_1\": %.0f, \"paths_per_s\": %.0f, "
            "\"threads\": %d, \"thread_efficiency\": %.3f, \"bare_thread_efficiency\": %.3f, \"rays_per_s_1\": %.0f, \"rays_per_path\": %.3f, \"shadow_rays_per_path\": %.3f, \"eta\": %.3f, "
-           "\"bare_ns_per_ray\": %.1f, \"read_s\": %.3f, \"build_s\": %.3f, \"peak_memory_B\": %llu, \"triangles\": %llu}\n",
+           "\"bare_ns_per_ray\": %.1f, \"read_s\": %.3f, \"build_s\": %.3f, \"first_pixel_s\": %.3f, \"peak_memory_B\": %llu, \"triangles\": %llu}\n",
            name, scene.film.width, scene.film.height, scene.spp, s->runs, spread, (double)report.paths / t_one, (double)report.paths / t_all, threads,
            t_one / (t_all * threads), t_bare / t_bare_all, n_rays / t_one, (double)report.rays / (double)report.paths, (double)report.shadow_rays / (double)report.paths,
-           t_bare / t_one, 1e9 * t_bare / n_rays, scene.read_s, counts.build_s, (unsigned long long)peak_B, (unsigned long long)counts.triangles);
+           t_bare / t_one, 1e9 * t_bare / n_rays, scene.read_s, counts.build_s, first_pixel_s, (unsigned long long)peak_B, (unsigned long long)counts.triangles);
     sr_free(rays.rays);
     sr_import_result_free(&scene);
     return 0;
@@ -154,8 +171,11 @@ static int run_load(const char *name, const char *path)
     getrusage(RUSAGE_SELF, &usage);
     double cpu_s = (double)usage.ru_utime.tv_sec + 1e-6 * (double)usage.ru_utime.tv_usec; // of all threads
     struct sr_scene_counts counts = sr_scene_count(scene.scene);
-    printf("{\"case\": \"load %s\", \"load_s\": %.3f, \"cpu_s\": %.3f, \"read_s\": %.3f, \"build_s\": %.3f, \"threads\": %d, \"peak_memory_B\": %llu, \"triangles\": %llu}\n", name, load_s,
-           cpu_s, scene.read_s, counts.build_s, sr_thread_count(), (unsigned long long)sr_peak_memory_B(), (unsigned long long)counts.triangles);
+    uint64_t peak_B = sr_peak_memory_B();
+    struct sr_render_job job = job_of(&scene, 1);
+    double first_pixel_s = time_to_first_pixel(&job, start_s);
+    printf("{\"case\": \"load %s\", \"load_s\": %.3f, \"cpu_s\": %.3f, \"read_s\": %.3f, \"build_s\": %.3f, \"first_pixel_s\": %.3f, \"threads\": %d, \"peak_memory_B\": %llu, \"triangles\": %llu}\n", name, load_s,
+           cpu_s, scene.read_s, counts.build_s, first_pixel_s, sr_thread_count(), (unsigned long long)peak_B, (unsigned long long)counts.triangles);
     sr_import_result_free(&scene);
     return 0;
 }

@@ -53,11 +53,15 @@ struct sr_sigmoid sr_rgb_to_sigmoid(enum sr_colour_space_id space, struct sr_rgb
     if (v[0] == v[1] && v[1] == v[2])
         return grey(v[0]);
 
-    int largest = v[0] > v[1] ? (v[0] > v[2] ? 0 : 2) : (v[1] > v[2] ? 1 : 2);
+    // no branches: which one is largest cannot be foretold
+    int largest = v[0] > v[1] ? 0 : 1;
+    float z = v[0] > v[1] ? v[0] : v[1];
+    largest = z > v[2] ? largest : 2;
+    z = z > v[2] ? z : v[2];
+    float next = largest == 0 ? v[1] : largest == 1 ? v[2] : v[0], last = largest == 0 ? v[2] : largest == 1 ? v[0] : v[1];
     const struct sr_rgb_table *table = tables[space];
     const int n = SR_RGB_RESOLUTION;
-    float z = v[largest];
-    float x = v[(largest + 1) % 3] / z * (float)(n - 1), y = v[(largest + 2) % 3] / z * (float)(n - 1);
+    float x = next / z * (float)(n - 1), y = last / z * (float)(n - 1);
     int i = x < n - 2 ? (int)x : n - 2, j = y < n - 2 ? (int)y : n - 2;
     int k = z == 0.5f ? n / 2 - 1 : find_knot(table->knots, z); // what shines is scaled to that
     float tx = x - (float)i, ty = y - (float)j, tz = (z - table->knots[k]) / (table->knots[k + 1] - table->knots[k]);

@@ -308,10 +308,18 @@ static sr_status prepare_for(struct imagemap *m, bool is_float, struct sr_textur
     if (!is_float && use.rgb_use == SR_PARAM_ILLUMINANT)
         m->white = sr_spd_from_rgb_illuminant(m->texels.space, (struct sr_rgb){1, 1, 1});
     sr_status status = sr_mapping_prepare(&m->mapping, error);
-    if (status == SR_OK)
+    if (status == SR_OK && m->pyramid.count == 0)
         status = sr_pyramid_build(&m->pyramid, &m->texels, is_float, (struct sr_pyramid_adjust){m->scale, m->invert},
                                   use, arena, error);
     return status;
+}
+
+static void share(void *self, const void *other)
+{
+    struct imagemap *m = self;
+    const struct imagemap *o = other;
+    if (m->scale == o->scale && m->invert == o->invert && m->texels.bytes == o->texels.bytes && m->texels.floats == o->texels.floats)
+        m->pyramid = o->pyramid;
 }
 
 static sr_status prepare_float(void *self, struct sr_texture_use use, struct sr_arena *arena, struct sr_error *error)
@@ -333,6 +341,7 @@ const struct sr_texture_model sr_texture_imagemap_float = {
     .mapping_offset = OFFSET(mapping),
     .transform_offset = SR_TEXTURE_NOWHERE,
     .prepare = prepare_float,
+    .share = share,
     .eval_float = eval_float,
 };
 const struct sr_texture_model sr_texture_imagemap_spectrum = {
@@ -344,5 +353,6 @@ const struct sr_texture_model sr_texture_imagemap_spectrum = {
     .mapping_offset = OFFSET(mapping),
     .transform_offset = SR_TEXTURE_NOWHERE,
     .prepare = prepare_spectrum,
+    .share = share,
     .eval_spectrum = eval_spectrum,
 };

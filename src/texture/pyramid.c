@@ -20,18 +20,22 @@
 
 #include <string.h>
 
-static const float anchor_nm[3] = {400, 550, 700};
 
 // ---- packing ----
 
-static uint16_t half_from_float(float x)
+typedef uint16_t u16x4 __attribute__((vector_size(8)));
+typedef uint32_t u32x4 __attribute__((vector_size(16)));
+typedef float f32x4 __attribute__((vector_size(16)));
+
+static const f32x4 anchor_nm = {400, 550, 700, 0};
+
+static inline u16x4 halves_from_floats(f32x4 x)
 {
-    x = sr_clamp(x, -6e4f, 6e4f); // black and white have x = -inf and inf; here s is then within 1e-10 of 0 and 1
-    float scaled = x * 0x1p-112f; // the exponents of binary16 now stand where those of binary32 do
-    uint32_t bits;
-    memcpy(&bits, &scaled, 4);
-    uint32_t magnitude = ((bits & 0x7fffffffu) + 0x1000u) >> 13;
-    return (uint16_t)((bits >> 16 & 0x8000u) | magnitude);
+    u32x4 bits = (u32x4)(x * 0x1p-112f); // the exponents of binary16 now stand where those of binary32 do
+    u32x4 magnitude = ((bits & 0x7fffffffu) + 0x1000u) >> 13;
+    u32x4 is_large = (u32x4)(magnitude > 0x7b53u); // 6e4: black and white have x = -inf and inf; here s is then within 1e-10 of 0 and 1
+    magnitude = (magnitude & ~is_large) | (0x7b53u & is_large);
+    return __builtin_convertvector((bits >> 16 & 0x8000u) | magnitude, u16x4);
 }
 
 static float scale_from_packed(uint16_t packed)
@@ -52,25 +56,23 @@ static uint16_t scale_to_packed(float x)
 
 struct sr_packed_texel sr_packed_texel_encode(struct sr_texture_use use, struct sr_rgb rgb)
 {
-    struct sr_packed_texel t = {.scale = scale_to_packed(1)};
+    uint16_t packed_scale = scale_to_packed(1);
     if (use.rgb_use != SR_PARAM_ALBEDO) {
         // the curve of rgb / scale, with twice the greatest as scale: where the sigmoid is smoothest. The scale is
         // rounded before the division, so that costs nothing
-        t.scale = scale_to_packed(2 * sr_max(rgb.r, sr_max(rgb.g, rgb.b)));
-        float scale = scale_from_packed(t.scale);
+        packed_scale = scale_to_packed(2 * sr_max(rgb.r, sr_max(rgb.g, rgb.b)));
+        float scale = scale_from_packed(packed_scale);
         float inv = scale > 0 ? 1 / scale : 0;
         rgb = (struct sr_rgb){rgb.r * inv, rgb.g * inv, rgb.b * inv};
     }
     rgb = (struct sr_rgb){sr_clamp(rgb.r, 0, 1), sr_clamp(rgb.g, 0, 1), sr_clamp(rgb.b, 0, 1)};
     struct sr_sigmoid c = sr_rgb_to_sigmoid(use.space, rgb);
-    for (int i = 0; i < 3; ++i)
-        t.anchor[i] = half_from_float((c.c0 * anchor_nm[i] + c.c1) * anchor_nm[i] + c.c2);
+    u16x4 packed = halves_from_floats((c.c0 * anchor_nm + c.c1) * anchor_nm + c.c2);
+    packed[3] = packed_scale;
+    struct sr_packed_texel t;
+    memcpy(&t, &packed, sizeof t); // in one go: waiting for four stores would take longer than all the rest
     return t;
 }
-
-typedef uint16_t u16x4 __attribute__((vector_size(8)));
-typedef uint32_t u32x4 __attribute__((vector_size(16)));
-typedef float f32x4 __attribute__((vector_size(16)));
 
 sr_spectrum sr_packed_texels_sum(const struct sr_packed_texel *const texel[], const float weight[], int count,
                                  bool has_scale, sr_spectrum lambda)
@@ -134,6 +136,20 @@ static struct sr_rgb fetch(const struct source *s, uint32_t x, uint32_t y)
     return (struct sr_rgb){number, number, number};
 }
 
+// what fetch gives for texels x0 ... x0 + count - 1 of a row
+static void fetch_row(const struct source *s, uint32_t x0, uint32_t count, uint32_t y, struct sr_rgb *out)
+{
+    const struct sr_texels *t = s->texels;
+    if (!t || t->floats || !t->decode || s->is_float || s->channels < 3) {
+        for (uint32_t x = 0; x < count; ++x)
+            out[x] = fetch(s, x0 + x, y);
+        return;
+    }
+    const unsigned char *b = (const unsigned char *)t->bytes + ((size_t)y * s->width + x0) * s->channels; // as most images are
+    for (uint32_t x = 0; x < count; ++x, b += s->channels)
+        out[x] = (struct sr_rgb){t->decode[b[0]], t->decode[b[1]], t->decode[b[2]]};
+}
+
 // source cells that fall into target cell i when n cells become ceil(n / 2) of equal size, with their shares (sum 1)
 static int overlaps(uint32_t n, uint32_t i, uint32_t index[3], float share[3])
 {
@@ -143,6 +159,12 @@ static int overlaps(uint32_t n, uint32_t i, uint32_t index[3], float share[3])
         return 1;
     }
     uint32_t m = (n + 1) / 2;
+    if (n == 2 * m) { // most images
+        index[0] = 2 * i;
+        index[1] = 2 * i + 1;
+        share[0] = share[1] = 0.5f;
+        return 2;
+    }
     double lo = (double)i * n / m, hi = (double)(i + 1) * n / m;
     int count = 0;
     for (uint32_t k = (uint32_t)lo; k < n && (double)k < hi && count < 3; ++k) {
@@ -173,7 +195,7 @@ static float adjusted(struct sr_pyramid_adjust a, float v)
 }
 
 // images repeat their colours: those met lately in a band of rows are kept with their curves
-enum { BAND_ROWS = 32, CACHE_SIZE = 2048 };
+enum { BAND_ROWS = 32, CACHE_SIZE = 2048, RUN = 256 };
 struct cached {
     struct sr_rgb rgb;
     struct sr_packed_texel packed;
@@ -194,9 +216,13 @@ static void convert_band(void *context, uint64_t band)
     struct cached cache[CACHE_SIZE];
     for (int i = 0; i < CACHE_SIZE && work->spectra; ++i)
         cache[i].rgb.r = -1; // no texel's: none is negative
+    struct sr_rgb run[RUN];
     for (uint32_t y = y0; y < y1; ++y)
         for (uint32_t x = 0; x < work->source.width; ++x) {
-            struct sr_rgb rgb = fetch(&work->source, x, y);
+            uint32_t left = work->source.width - x;
+            if (x % RUN == 0)
+                fetch_row(&work->source, x, left < RUN ? left : RUN, y, run);
+            struct sr_rgb rgb = run[x % RUN];
             size_t i = (size_t)y * work->source.width + x;
             rgb.r = adjusted(work->adjust, rgb.r);
             if (work->values) {
@@ -217,20 +243,29 @@ static void halve_row(void *context, uint64_t y)
     struct work *work = context;
     const struct source *s = &work->source;
     uint32_t width = (s->width + 1) / 2, channels = s->is_float ? 1 : 3;
-    uint32_t rows[3], columns[3];
+    uint32_t rows[3], columns[3], begin = 0, end = 0; // columns that `mean` holds
     float row_share[3], column_share[3];
     int row_count = overlaps(s->height, (uint32_t)y, rows, row_share);
+    struct sr_rgb mean[RUN], row[RUN]; // of the rows
     for (uint32_t x = 0; x < width; ++x) {
         int column_count = overlaps(s->width, x, columns, column_share);
-        struct sr_rgb sum = {0};
-        for (int j = 0; j < row_count; ++j)
-            for (int i = 0; i < column_count; ++i) {
-                struct sr_rgb v = fetch(s, columns[i], rows[j]);
-                float share = row_share[j] * column_share[i];
-                sum.r += share * v.r;
-                sum.g += share * v.g;
-                sum.b += share * v.b;
+        if (columns[column_count - 1] >= end) {
+            begin = columns[0];
+            end = s->width - begin < RUN ? s->width : begin + RUN;
+            memset(mean, 0, sizeof mean);
+            for (int j = 0; j < row_count; ++j) {
+                fetch_row(s, begin, end - begin, rows[j], row);
+                for (uint32_t i = 0; i < end - begin; ++i)
+                    mean[i] = (struct sr_rgb){mean[i].r + row_share[j] * row[i].r, mean[i].g + row_share[j] * row[i].g, mean[i].b + row_share[j] * row[i].b};
             }
+        }
+        struct sr_rgb sum = {0};
+        for (int i = 0; i < column_count; ++i) {
+            struct sr_rgb v = mean[columns[i] - begin];
+            sum.r += column_share[i] * v.r;
+            sum.g += column_share[i] * v.g;
+            sum.b += column_share[i] * v.b;
+        }
         float *out = work->halved + ((size_t)y * width + x) * channels;
         out[0] = sum.r;
         if (channels == 3) {

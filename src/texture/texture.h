@@ -41,6 +41,9 @@ struct sr_texture_model {
     bool is_float, is_spectrum;                           // which of the two eval functions exists
     size_t texels_offset, mapping_offset, transform_offset; // [B] in the struct; SR_TEXTURE_NOWHERE: has none
     sr_status (*prepare)(void *self, struct sr_texture_use use, struct sr_arena *arena, struct sr_error *error);
+    /* Before prepare: takes over what another texture of this model, prepared for the same use, has made of the same texels, if it
+     * would come out the same; prepare then does the rest. NULL: has nothing worth it. */
+    void (*share)(void *self, const void *other);
     float (*eval_float)(const void *self, const struct sr_point *x);
     sr_spectrum (*eval_spectrum)(const void *self, const struct sr_point *x, const struct sr_wavelengths *w);
     /* true: the texture has one value everywhere, this one; NULL: never. Ask after prepare. */

@@ -22,6 +22,7 @@ struct sr_pbrt_late_texture {
     const char *path; // of the image
     struct sr_location where;
     float gamma;
+    const struct sr_pbrt_late_texture *like; // an earlier one of the same texels and use; or NULL
     struct sr_arena arena;
     struct sr_error error;
 };

@@ -42,11 +42,35 @@ static sr_status put_off(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e
     return SR_OK;
 }
 
-static void prepare_late(void *context, uint64_t k)
+static void find_like(struct sr_pbrt_late_texture *late, size_t k)
 {
-    struct sr_pbrt_late_texture *t = &((struct sr_pbrt_late_texture *)context)[k];
+    struct sr_pbrt_late_texture *t = &late[k];
+    for (size_t i = 0; i < k && t->model->share && !t->like; ++i)
+        if (!late[i].like && late[i].model == t->model && late[i].use.rgb_use == t->use.rgb_use && late[i].gamma == t->gamma && strcmp(late[i].path, t->path) == 0)
+            t->like = &late[i];
+}
+
+static void prepare_late(struct sr_pbrt_late_texture *t)
+{
     if (t->model->prepare)
         t->model->prepare(t->self, t->use, &t->arena, &t->error);
+}
+
+static void prepare_first(void *context, uint64_t k)
+{
+    struct sr_pbrt_late_texture *t = &((struct sr_pbrt_late_texture *)context)[k];
+    if (!t->like)
+        prepare_late(t);
+}
+
+static void prepare_again(void *context, uint64_t k)
+{
+    struct sr_pbrt_late_texture *t = &((struct sr_pbrt_late_texture *)context)[k];
+    if (!t->like)
+        return;
+    if (t->like->error.status == SR_OK)
+        t->model->share(t->self, t->like->self);
+    prepare_late(t);
 }
 
 sr_status sr_pbrt_finish_textures(struct sr_pbrt_build *b)
@@ -59,8 +83,10 @@ sr_status sr_pbrt_finish_textures(struct sr_pbrt_build *b)
         struct sr_texels *texels = (struct sr_texels *)((char *)late[k].self + late[k].model->texels_offset);
         if (sr_pbrt_texels(b, late[k].path, late[k].where, late[k].gamma, false, texels) != SR_OK)
             return b->error->status;
+        find_like(late, k);
     }
-    sr_parallel_for(b->threads, count, prepare_late, late);
+    sr_parallel_for(b->threads, count, prepare_first, late);
+    sr_parallel_for(b->threads, count, prepare_again, late);
     for (size_t k = 0; k < count; ++k) {
         sr_arena_adopt(b->arena, &late[k].arena);
         if (late[k].error.status != SR_OK)

@@ -380,3 +380,21 @@ TEST(an_image_without_texels_is_refused)
     EXPECT_EQUAL_INT(m.model->prepare(m.self, use, &m.arena, &m.error), SR_ERROR_INPUT);
     sr_arena_free(&m.arena);
 }
+
+TEST(textures_of_one_image_share_its_levels_where_they_are_the_same)
+{
+    struct made first = image(true, 4, 2, 1, ramp), like = image(true, 4, 2, 1, ramp), darker = image(true, 4, 2, 1, ramp);
+    *(int32_t *)made_member(&like, "filter") = POINT;
+    *(float *)made_member(&darker, "scale") = 0.5f;
+    struct sr_texture t = made_texture(&first, SR_PARAM_ALBEDO);
+    first.model->share(like.self, first.self);
+    first.model->share(darker.self, first.self);
+    struct sr_texture a = made_texture(&like, SR_PARAM_ALBEDO), b = made_texture(&darker, SR_PARAM_ALBEDO);
+    EXPECT(like.arena.total < first.arena.total && darker.arena.total == first.arena.total);
+    EXPECT_NEAR(at(t, 0.49f, 0.75f, 0), 2.46, 1e-5);
+    EXPECT_NEAR(at(a, 0.49f, 0.75f, 0), 2, 0);
+    EXPECT_NEAR(at(b, 0.125f, 0.25f, 0), 5, 1e-6);
+    sr_arena_free(&first.arena);
+    sr_arena_free(&like.arena);
+    sr_arena_free(&darker.arena);
+}
