@@ -142,7 +142,7 @@ static bool write_beside(struct sr_keeper_watch *w)
 {
     struct sr_keeper *k = w->keeper;
     struct sr_error ignored = {0};
-    if (!k->copy && !k->part) // a part is large
+    if (!k->copy && !k->part && !k->keep->has_no_copy) // a part is large
         k->copy = sr_film_twin(w->view.film, &ignored);
     struct sr_render_report report;
     w->view.hold(w->view.run);

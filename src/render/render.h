@@ -40,6 +40,7 @@ struct sr_render_keep {
     const char *path;     // the file; the generation before it has a ~ at its end
     const char *identity; // of this render: sr_render_identity
     double interval_s;    // between checkpoints
+    bool has_no_copy;     // there is no memory for a second film: workers wait while it is written
     bool resumes;         // goes on from the file if there is one; refuses one that belongs to another render
     struct sr_log *log;   // told what does not work while the render goes on
 };

@@ -69,7 +69,9 @@ const char *render_output_name(const struct render_arguments *a, const struct sr
 /* Endings that are known, folders that can be written: before any work. 0, or the exit code of a failure that has been
  * told. scene: NULL while it is not read yet. */
 int render_check_outputs(const struct render_arguments *a, const struct sr_import_result *scene);
-/* Whether the picture and what belongs to it fit into this machine's memory. range: NULL, or of the part. */
+/* Whether so many of the picture fit into this machine's memory, with what belongs to it. */
+bool render_has_room(const struct sr_render_job *job, int copies);
+/* The same for one, with a message. range: NULL, or of the part. */
 sr_status render_check_memory(const struct sr_render_job *job, const struct sr_render_range *range, struct sr_error *error);
 sr_status render_write_outputs(const struct rendering *r, const struct sr_film *film, double elapsed_s,
                                bool is_complete, struct sr_error *error);

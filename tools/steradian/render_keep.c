@@ -4,6 +4,7 @@
 #include "render_command.h"
 
 #include <stdio.h>
+#include <string.h>
 #include <sys/stat.h>
 
 /* Beside the first output, if that is a file: not beside a pipe or a device. */
@@ -28,9 +29,13 @@ int render_keep_begin(const struct render_arguments *a, const struct sr_import_r
         return 0;
     if (a->checkpoint && command_check_output(path, &error) != SR_OK)
         return command_fail("render", &error);
+    for (int i = 0; i < render_output_count(a); ++i)
+        if (strcmp(path, render_output_name(a, scene, i)) == 0)
+            return command_usage(&command_render, "--checkpoint %s: that is where the picture goes", path);
     if (!a->resume && sr_file_exists(path) && !a->quiet)
         fprintf(stderr, "note: %s is there of a render that has not ended; this one begins anew and will replace it (--resume goes on from it)\n", path);
-    k->keep = (struct sr_render_keep){.path = path, .identity = identity, .interval_s = a->checkpoint_s, .resumes = a->resume, .log = &k->log};
+    k->keep = (struct sr_render_keep){.path = path, .identity = identity, .interval_s = a->checkpoint_s, .resumes = a->resume,
+                                      .has_no_copy = !render_has_room(job, 2), .log = &k->log};
     job->keep = &k->keep;
     return 0;
 }

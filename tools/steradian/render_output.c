@@ -49,20 +49,32 @@ static double pixel_B(const struct sr_render_job *job)
     uint32_t groups = job->replicates ? job->replicates : 4; // of splats
     double splats_B = job->integrator.model->splats ? (double)sr_film_splats_B(groups < SR_SPLAT_GROUPS ? groups : SR_SPLAT_GROUPS) : 0;
     double adaptive_B = job->adaptive.is_on ? sizeof(struct sr_film_pixel) + (job->with_aov ? sizeof(struct sr_film_aov) : 0) + 32 : 0;
-    double copy_B = job->keep ? splats_B + (double)sizeof(struct sr_film_pixel) + (job->with_aov ? (double)sizeof(struct sr_film_aov) : 0) : 0;
-    return splats_B + adaptive_B + copy_B + (double)sizeof(struct sr_film_pixel) + (job->with_aov ? (double)sizeof(struct sr_film_aov) : 0) +
+    return splats_B + adaptive_B + (double)sizeof(struct sr_film_pixel) + (job->with_aov ? (double)sizeof(struct sr_film_aov) : 0) +
            2 * channels * sizeof(float);
+}
+
+static double memory_there_B(void)
+{
+    return (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+}
+
+static double pixels_of(const struct sr_render_job *job)
+{
+    return ((double)job->film.x1 - job->film.x0) * ((double)job->film.y1 - job->film.y0);
+}
+
+bool render_has_room(const struct sr_render_job *job, int copies)
+{
+    return !(copies * pixels_of(job) * pixel_B(job) > memory_there_B());
 }
 
 sr_status render_check_memory(const struct sr_render_job *job, const struct sr_render_range *range, struct sr_error *error)
 {
-    double width = (double)job->film.x1 - job->film.x0, height = (double)job->film.y1 - job->film.y0;
-    double needed_B = width * height * (pixel_B(job) + (range ? sr_render_samples_B(job, *range) : 0));
-    double there_B = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+    double needed_B = pixels_of(job) * (pixel_B(job) + (range ? sr_render_samples_B(job, *range) : 0)), there_B = memory_there_B();
     if (there_B > 0 && needed_B > there_B)
         return sr_fail(error, SR_ERROR_RESOURCE,
-                       "a picture of %.0f x %.0f pixels needs %.3g GiB of memory, this machine has %.3g GiB", width,
-                       height, needed_B / 1073741824, there_B / 1073741824);
+                       "a picture of %d x %d pixels needs %.3g GiB of memory, this machine has %.3g GiB", job->film.x1 - job->film.x0,
+                       job->film.y1 - job->film.y0, needed_B / 1073741824, there_B / 1073741824);
     return SR_OK;
 }
 
