@@ -147,6 +147,9 @@ size_t sr_film_splats_B(uint32_t groups);
  * filter reaches `raster` gains f rgb, and a pixel's value is the mean over paths. Threads may call it at the same time. */
 void sr_film_splat(struct sr_film *film, const struct sr_filter *filter, uint32_t group, sr_vec2 raster, const float rgb[3]);
 void sr_film_splat_paths(struct sr_film *film, uint32_t group, uint64_t paths); // so many paths have been begun
+/* All sums that are not 0, as bytes that another film can add; then they are 0. NULL: no memory. */
+uint8_t *sr_film_splats_pack(struct sr_film *film, size_t *size);
+bool sr_film_splats_add(struct sr_film *film, const uint8_t *bytes, size_t size); // false: these are no such bytes
 double sr_film_splat_mean(const struct sr_film *film, size_t pixel, int channel);
 /* Variance of the mean of w . rgb over the pixels x0 <= x < x1, y0 <= y < y1, summed: paths splat neighbours together. */
 double sr_film_splat_variance(const struct sr_film *film, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1, const double w[3]);

@@ -43,16 +43,21 @@ static uint64_t *words_of(const struct sr_film *film, size_t pixel, int channel,
     return &s->words[((pixel * 3 + (size_t)channel) * s->groups + group) * 2];
 }
 
+static void add_wide(uint64_t words[2], struct wide a)
+{
+    uint64_t before = __atomic_fetch_add(&words[0], a.low, __ATOMIC_RELAXED);
+    a.high += before + a.low < before;
+    if (a.high)
+        __atomic_fetch_add(&words[1], a.high, __ATOMIC_RELAXED);
+}
+
 static void add(uint64_t words[2], double value)
 {
     double units = rint(fabs(value) * UNITS), high = floor(units * 0x1p-64);
     struct wide a = {(uint64_t)(units - high * 0x1p64), (uint64_t)high};
     if (value < 0)
         a = negative(a);
-    uint64_t before = __atomic_fetch_add(&words[0], a.low, __ATOMIC_RELAXED);
-    a.high += before + a.low < before;
-    if (a.high)
-        __atomic_fetch_add(&words[1], a.high, __ATOMIC_RELAXED);
+    add_wide(words, a);
 }
 
 static double sum_of(const uint64_t words[2])
@@ -133,4 +138,97 @@ double sr_film_splat_variance(const struct sr_film *film, uint32_t x0, uint32_t 
     }
     double scale = (double)film->width * film->height / n;
     return used > 1 ? spread * scale * scale * used / (used - 1) : NAN;
+}
+
+/* ---- sums that travel ----
+ *
+ * The numbers of groups, pixels and dropped values, paths of each group; then each sum that is not 0: how many that are 0 it comes
+ * after, and its value, the sign in the lowest bit. Numbers go in groups of 7 bits, lowest first, the 8th bit: more follow. */
+
+typedef unsigned __int128 uint128;
+enum { LONGEST = 19 }; // [B] of 128 bits, 7 in each
+
+struct bytes {
+    uint8_t *data;
+    size_t size, room;
+};
+
+static bool put(struct bytes *b, uint128 value)
+{
+    if (b->room - b->size < LONGEST) {
+        size_t room = b->room * 2 + 4096;
+        uint8_t *grown = sr_realloc(b->data, b->room, room);
+        if (!grown)
+            return false;
+        b->data = grown;
+        b->room = room;
+    }
+    for (; value >> 7; value >>= 7)
+        b->data[b->size++] = (uint8_t)(value | 0x80);
+    b->data[b->size++] = (uint8_t)value;
+    return true;
+}
+
+static bool get(const uint8_t **at, const uint8_t *end, uint128 *value)
+{
+    *value = 0;
+    for (int shift = 0; *at < end && shift < 7 * LONGEST; shift += 7) {
+        uint8_t byte = *(*at)++;
+        *value |= (uint128)(byte & 0x7f) << shift;
+        if (!(byte & 0x80))
+            return true;
+    }
+    return false;
+}
+
+uint8_t *sr_film_splats_pack(struct sr_film *film, size_t *size)
+{
+    struct sr_film_splats *s = film->splats;
+    struct bytes b = {0};
+    size_t count = (size_t)film->width * film->height * 3 * s->groups, last = 0;
+    bool is_ok = put(&b, s->groups) && put(&b, (uint128)film->width * film->height) && put(&b, s->dropped);
+    for (uint32_t g = 0; is_ok && g < s->groups; ++g)
+        is_ok = put(&b, s->paths[g]);
+    for (size_t i = 0; is_ok && i < count; ++i) {
+        uint128 sum = (uint128)s->words[2 * i + 1] << 64 | s->words[2 * i];
+        if (!sum)
+            continue;
+        is_ok = put(&b, i - last) && put(&b, sum >> 127 ? ~(sum << 1) : sum << 1);
+        s->words[2 * i] = s->words[2 * i + 1] = 0;
+        last = i + 1;
+    }
+    s->dropped = 0;
+    for (uint32_t g = 0; g < s->groups; ++g)
+        s->paths[g] = 0;
+    if (!is_ok) {
+        sr_free(b.data);
+        b = (struct bytes){0};
+    }
+    *size = b.size;
+    return b.data;
+}
+
+bool sr_film_splats_add(struct sr_film *film, const uint8_t *bytes, size_t size)
+{
+    struct sr_film_splats *s = film->splats;
+    const uint8_t *at = bytes, *end = bytes + size;
+    size_t count = (size_t)film->width * film->height * 3 * s->groups, next = 0;
+    uint128 groups, pixels, dropped, paths, gap, sum;
+    if (!get(&at, end, &groups) || groups != s->groups || !get(&at, end, &pixels) || pixels != (uint128)film->width * film->height || !get(&at, end, &dropped))
+        return false;
+    __atomic_fetch_add(&s->dropped, (uint64_t)dropped, __ATOMIC_RELAXED);
+    for (uint32_t g = 0; g < s->groups; ++g) {
+        if (!get(&at, end, &paths))
+            return false;
+        sr_film_splat_paths(film, g, (uint64_t)paths);
+    }
+    while (at < end) {
+        if (!get(&at, end, &gap) || !get(&at, end, &sum) || gap >= count - next)
+            return false;
+        next += (size_t)gap;
+        uint128 value = sum & 1 ? ~(sum >> 1) : sum >> 1;
+        add_wide(&s->words[2 * next], (struct wide){(uint64_t)value, (uint64_t)(value >> 64)});
+        ++next;
+    }
+    return true;
 }

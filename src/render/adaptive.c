@@ -120,9 +120,13 @@ static sr_status render_halves(const struct sr_render_job *job, struct half half
         status = sr_render_pass(job, &pass, report, error);
         if (status != SR_OK)
             return status;
-        if (i == 1 && !settle_counts(job, half, pilot, sr_clock_s() - pass.start_s))
+        bool has_sums = !job->crew || !job->crew->is_helper;
+        if (i == 1 && has_sums && !settle_counts(job, half, pilot, sr_clock_s() - pass.start_s))
             return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for the noise of a picture");
     }
+    for (int i = 0; i < 2; ++i)
+        if (sr_crew_share(job, half[i].counts, (size_t)half[i].film->width * half[i].film->height, error) != SR_OK)
+            return error->status;
     double sum[2] = {count_all(&half[0]), count_all(&half[1])};
     pass.blocks_before = REPLICATES;
     for (; keeper->pass < 4; ++keeper->pass) {
@@ -146,7 +150,7 @@ sr_status sr_render_adaptive(const struct sr_render_job *job, struct sr_film **f
     struct sr_keeper keeper = {.keep = job->keep, .film_count = 2};
     sr_status status = SR_OK;
     for (int i = 0; i < 2 && status == SR_OK; ++i) {
-        status = sr_film_create(&job->film, job->with_aov, &half[i].film, error);
+        status = sr_crew_film_create(job, &half[i].film, error);
         if (status != SR_OK)
             break;
         size_t count = (size_t)half[i].film->width * half[i].film->height;
@@ -159,6 +163,8 @@ sr_status sr_render_adaptive(const struct sr_render_job *job, struct sr_film **f
     }
     if (status == SR_OK)
         status = sr_keeper_resume(&keeper, report, error);
+    if (status == SR_OK)
+        status = sr_crew_share_keeper(job, &keeper, error);
     if (status == SR_OK && !keeper.is_complete)
         status = render_halves(job, half, &keeper, report, error);
     sr_keeper_end(&keeper, report);

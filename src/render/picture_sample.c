@@ -183,7 +183,7 @@ static void add_splat(void *user, sr_vec2 raster, sr_spectrum gain, const struct
     const float(*m)[3] = s->picture->response.rgb_from_xyz;
     for (int c = 0; c < 3; ++c)
         rgb[c] = kept * (m[c][0] * v[0] + m[c][1] * v[1] + m[c][2] * v[2]);
-    sr_film_splat(s->picture->film, &job->filter, s->group, raster, rgb);
+    sr_film_splat(s->film, &job->filter, s->group, raster, rgb);
 }
 
 /* The path that goes with sample i of the pixel: all of them are points of one net, in the order of the samples. */
@@ -223,7 +223,7 @@ void sr_picture_begin(struct sr_picture *picture, const struct sr_render_job *jo
 struct sr_splatting sr_splatting_begin(const struct sr_picture *picture)
 {
     const struct sr_sensor *sensor = &picture->job->sensor;
-    return (struct sr_splatting){.picture = picture, .target = {.self = sensor->self, .connect = sensor->model->connect, .density = sensor->model->density,
+    return (struct sr_splatting){.picture = picture, .film = picture->film, .target = {.self = sensor->self, .connect = sensor->model->connect, .density = sensor->model->density,
                                                      .pixels = (float)picture->film->width * (float)picture->film->height,
                                                      .middle = picture->has_middle ? &picture->middle : NULL, .add = add_splat}};
 }

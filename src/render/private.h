@@ -33,6 +33,7 @@ bool sr_picture_sample(const struct sr_picture *picture, uint32_t x, uint32_t y,
 /* Where paths from the lights are told, by one thread. */
 struct sr_splatting {
     const struct sr_picture *picture;
+    struct sr_film *film; // whose splats they are
     uint32_t group;
     struct sr_target target; // its user is the struct itself: whoever keeps it says where that is
 };
@@ -135,6 +136,40 @@ struct sr_keeper_view {
 };
 struct sr_keeper_watch *sr_keeper_watch_begin(struct sr_keeper *k, const struct sr_keeper_view *view); // NULL: nothing is kept
 void sr_keeper_watch_end(struct sr_keeper_watch *watch);
+
+/* ---- crew.c: a helper's finished units as bytes ---- */
+
+/* A film for this process's sums: a helper's has no more than splats and numbers of blocks. */
+sr_status sr_crew_film_create(const struct sr_render_job *job, struct sr_film **film, struct sr_error *error);
+/* A helper goes on where the owner does. */
+sr_status sr_crew_share_keeper(const struct sr_render_job *job, struct sr_keeper *keeper, struct sr_error *error);
+/* The owner's numbers become everybody's; nothing where there is no crew. */
+sr_status sr_crew_share(const struct sr_render_job *job, uint32_t *numbers, size_t count, struct sr_error *error);
+
+/* Units are collected in batches. With splats a batch has an accumulator of its own, so that it holds units and all that their
+ * paths have splatted, or nothing of either: units that begin go into the one batch, while those of the other come to an end. */
+struct sr_crew_batches;
+struct sr_crew_batch;
+struct sr_crew_batches *sr_crew_batches_create(const struct sr_render_job *job, const struct sr_film *film, struct sr_error *error);
+void sr_crew_batches_destroy(struct sr_crew_batches *b);
+/* A unit begins; *splats: where its splats go. With splats, only when the tile's block before has left. */
+struct sr_crew_batch *sr_crew_enter(struct sr_crew_batches *b, struct sr_film **splats);
+/* It ends; a tile's units leave in order. The first so many pixels are done. */
+void sr_crew_leave(struct sr_crew_batches *b, struct sr_crew_batch *batch, const struct sr_crew_unit *unit, uint32_t pixels,
+                   const struct sr_film_block *blocks, const double *buckets, const struct sr_render_counts *counts);
+/* Hands over what is left, once no unit is under way; false: memory was short and units are missing. */
+bool sr_crew_finish(struct sr_crew_batches *b);
+
+/* What reads batches into the film. */
+struct sr_crew_reader {
+    struct sr_film *film;
+    const struct sr_render_crew *crew;
+    const uint32_t *had;      // NULL, or of each pixel: this many blocks are there already
+    uint32_t blocks_before;   // the pass's block 0 is each pixel's block of this number
+    struct sr_render_counts counts; // of what has been read
+    uint64_t units;
+};
+void sr_crew_read(struct sr_crew_reader *r, const void *bytes, size_t size);
 
 /* adaptive.c */
 sr_status sr_render_adaptive(const struct sr_render_job *job, struct sr_film **film, struct sr_render_report *report, struct sr_error *error);

@@ -6,6 +6,7 @@
 #include <pthread.h>
 #include <sched.h>
 #include <string.h>
+#include <time.h>
 
 enum { DEFAULT_TILE = 16, ORDINARY_BLOCKS = 4 };
 struct run {
@@ -35,6 +36,7 @@ struct run {
     struct sr_block_tree *trees;   // one for each thread
     double *buckets;               // as many times the film's buckets; NULL: it has none
     void *shared;                  // of the integrator's samples
+    struct sr_crew_batches *batches; // NULL: the film is here, else where a helper's units go
 };
 
 /* ---- one unit: a tile times a block ---- */
@@ -94,7 +96,7 @@ static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, 
     struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, x, y, replicate, from);
     worker->replicate = replicate;
     if (splatting)
-        splatting->group = block % run->film->splats->groups;
+        splatting->group = block % splatting->film->splats->groups;
     sr_block_tree_begin(tree, from - begin);
     for (uint32_t i = from; i < to; ++i) {
         double *buckets;
@@ -118,7 +120,7 @@ static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, 
             break;
     }
     if (splatting)
-        sr_film_splat_paths(run->film, splatting->group, tree->next - tree->first);
+        sr_film_splat_paths(splatting->film, splatting->group, tree->next - tree->first);
     if (to - from == end - begin)
         sr_block_tree_fold(tree);
     return tree->next == to - begin;
@@ -141,29 +143,72 @@ static bool is_there(const struct run *run, uint32_t x, uint32_t y, uint32_t blo
     return SR_UNLIKELY(run->had != NULL) && run->had[(size_t)y * run->film->width + x] > run->pass->blocks_before + block - run->first_block;
 }
 
+/* The unit's pixels go into the film, as many as are done. */
+static void store_unit(struct run *run, const struct sr_crew_unit *u, uint32_t done, const struct sr_film_block *blocks, const double *buckets)
+{
+    uint32_t width = u->x1 - u->x0;
+    for (uint32_t i = 0; i < done; ++i) {
+        uint32_t x = u->x0 + i % width, y = u->y0 + i / width;
+        if (is_there(run, x, y, u->block))
+            continue;
+        if (run->pass->part) {
+            run->film->pixels[(size_t)y * run->film->width + x].blocks += 1;
+            continue;
+        }
+        if (buckets)
+            sr_film_store_buckets(run->film, x, y, buckets + (size_t)i * run->picture.response.buckets);
+        sr_film_store(run->film, x, y, &blocks[i]);
+    }
+    const struct sr_render_crew *crew = run->job->crew;
+    if (crew && crew->note)
+        crew->note(crew->self, u);
+}
+
+static void count(struct run *run, const struct sr_render_counts *c)
+{
+    atomic_fetch_add_explicit(&run->paths, c->paths, memory_order_relaxed);
+    atomic_fetch_add_explicit(&run->dropped, c->dropped, memory_order_relaxed);
+    atomic_fetch_add_explicit(&run->rays, c->rays, memory_order_relaxed);
+    atomic_fetch_add_explicit(&run->shadow_rays, c->shadow_rays, memory_order_relaxed);
+    atomic_fetch_add_explicit(&run->vertices, c->vertices, memory_order_relaxed);
+}
+
+/* [s] of a processor that this thread has had. */
+static double thread_clock_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
 /* Cancelled, the pixels that are done come in; with splats that takes one pixel's block at most, without no time. */
 static bool do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratch, double *buckets, struct sr_block_tree *tree, struct sr_splatting *splatting, struct sr_worker *worker)
 {
     uint32_t tiles = run->tiles_x * run->tiles_y, tile = (uint32_t)(unit % tiles), block = run->first_block + (uint32_t)(unit / tiles);
-    uint32_t x0 = tile % run->tiles_x * run->tile, y0 = tile / run->tiles_x * run->tile;
-    uint32_t x1 = x0 + run->tile < run->film->width ? x0 + run->tile : run->film->width;
-    uint32_t y1 = y0 + run->tile < run->film->height ? y0 + run->tile : run->film->height;
+    struct sr_crew_unit u = {.tile = tile, .block = block, .x0 = tile % run->tiles_x * run->tile, .y0 = tile / run->tiles_x * run->tile};
+    u.x1 = u.x0 + run->tile < run->film->width ? u.x0 + run->tile : run->film->width;
+    u.y1 = u.y0 + run->tile < run->film->height ? u.y0 + run->tile : run->film->height;
     uint32_t left = (uint32_t)run->film->settings.x0, top = (uint32_t)run->film->settings.y0;
-    uint32_t width = x1 - x0, count = width * (y1 - y0), done = 0;
+    uint32_t width = u.x1 - u.x0, pixels = width * (u.y1 - u.y0), done = 0;
     struct sr_render_part *part = run->pass->part;
-    uint64_t paths = 0, dropped = 0, rays = 0, shadow_rays = 0, vertices = 0;
+    struct sr_render_counts counts = {0};
     if (splatting && !wait_for_turn(run, tile, block)) // once it has begun it comes in
         return false;
-    for (; done < count; ++done) {
-        uint32_t x = x0 + done % width, y = y0 + done / width;
+    struct sr_film *splats = run->film;
+    struct sr_crew_batch *batch = run->batches ? sr_crew_enter(run->batches, &splats) : NULL;
+    if (splatting)
+        splatting->film = splats;
+    double start_s = thread_clock_s();
+    for (; done < pixels; ++done) {
+        uint32_t x = u.x0 + done % width, y = u.y0 + done / width;
         if (is_there(run, x, y, block))
             continue;
         if (is_cancelled(run) || !fill_block(run, left + x, top + y, block, tree, splatting, worker))
             break;
-        paths += tree->next - tree->first;
+        counts.paths += tree->next - tree->first;
         for (uint32_t i = 0; i < tree->depth; ++i)
-            dropped += tree->nodes[i].dropped;
-        rays = worker->rays, shadow_rays = worker->shadow_rays, vertices = worker->vertices;
+            counts.dropped += tree->nodes[i].dropped;
+        counts.rays = worker->rays, counts.shadow_rays = worker->shadow_rays, counts.vertices = worker->vertices;
         if (part) { // not while a checkpoint reads it
             pthread_rwlock_rdlock(&run->film_lock);
             sr_part_keep(part, block, x, y, tree);
@@ -174,29 +219,25 @@ static bool do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratc
         if (buckets)
             memcpy(buckets + (size_t)done * tree->bucket_count, tree->buckets, tree->bucket_count * sizeof *buckets);
     }
-    if (!wait_for_turn(run, tile, block))
-        return false;
-    pthread_rwlock_rdlock(&run->film_lock);
-    for (uint32_t i = 0; i < done; ++i) {
-        uint32_t x = x0 + i % width, y = y0 + i / width;
-        if (is_there(run, x, y, block))
-            continue;
-        if (part) {
-            run->film->pixels[(size_t)y * run->film->width + x].blocks += 1;
-            continue;
-        }
-        if (buckets)
-            sr_film_store_buckets(run->film, x, y, buckets + (size_t)i * run->picture.response.buckets);
-        sr_film_store(run->film, x, y, &scratch[i]);
-    }
-    atomic_fetch_add_explicit(&run->paths, paths, memory_order_relaxed);
-    atomic_fetch_add_explicit(&run->dropped, dropped, memory_order_relaxed);
-    atomic_fetch_add_explicit(&run->rays, rays, memory_order_relaxed);
-    atomic_fetch_add_explicit(&run->shadow_rays, shadow_rays, memory_order_relaxed);
-    atomic_fetch_add_explicit(&run->vertices, vertices, memory_order_relaxed);
-    pthread_rwlock_unlock(&run->film_lock);
+    u.cost_s = thread_clock_s() - start_s;
     worker->rays = worker->shadow_rays = worker->vertices = 0;
-    if (done < count)
+    if (!wait_for_turn(run, tile, block)) {
+        done = 0;
+        counts = (struct sr_render_counts){0};
+    }
+    if (batch) {
+        pthread_mutex_lock(&run->progress_lock);
+        counts.has_dropped = run->has_dropped;
+        memcpy(counts.first_dropped, run->first_dropped, sizeof counts.first_dropped);
+        pthread_mutex_unlock(&run->progress_lock);
+        sr_crew_leave(run->batches, batch, &u, done, scratch, buckets, &counts);
+    } else if (done) {
+        pthread_rwlock_rdlock(&run->film_lock);
+        store_unit(run, &u, done, scratch, buckets);
+        count(run, &counts);
+        pthread_rwlock_unlock(&run->film_lock);
+    }
+    if (done < pixels)
         return false;
     atomic_store_explicit(&run->tile_blocks[tile], block + 1, memory_order_release);
     return true;
@@ -260,11 +301,16 @@ static void add_to_report(const struct run *run, struct sr_render_report *report
     report->is_complete = !run->cancelled;
 }
 
+static uint64_t units_of(const struct run *run)
+{
+    return (uint64_t)run->tiles_x * run->tiles_y * (run->end_block - run->first_block);
+}
+
 /* Share of the whole work that is done [1]. */
 static double share_of(const struct run *run, uint64_t units_done)
 {
     const struct sr_render_pass *pass = run->pass;
-    double share = (double)units_done / ((double)run->tiles_x * run->tiles_y * (run->end_block - run->first_block));
+    double share = (double)units_done / (double)units_of(run);
     return pass->share_begin + share * (pass->share_end - pass->share_begin);
 }
 
@@ -295,13 +341,21 @@ static void tell_progress(struct run *run, uint64_t units_done)
     pthread_mutex_unlock(&run->progress_lock);
 }
 
+static bool next_unit(struct run *run, uint64_t *unit)
+{
+    const struct sr_render_crew *crew = run->job->crew;
+    if (crew)
+        return crew->next(crew->self, unit);
+    *unit = atomic_fetch_add_explicit(&run->next_unit, 1, memory_order_relaxed);
+    return *unit < units_of(run);
+}
+
 static void work(void *context, int thread)
 {
     struct run *run = context;
     struct sr_film_block *scratch = run->scratch + (size_t)thread * run->tile * run->tile;
     double *buckets = run->buckets ? run->buckets + (size_t)thread * run->tile * run->tile * run->picture.response.buckets : NULL;
     struct sr_block_tree *tree = &run->trees[thread];
-    uint64_t units = (uint64_t)run->tiles_x * run->tiles_y * (run->end_block - run->first_block);
     struct sr_splatting splatting = sr_splatting_begin(&run->picture);
     splatting.target.user = &splatting;
     bool splats = run->film->splats != NULL;
@@ -309,14 +363,63 @@ static void work(void *context, int thread)
     for (;;) {
         if (splats)
             pass_gate(run);
-        uint64_t unit = atomic_fetch_add_explicit(&run->next_unit, 1, memory_order_relaxed);
-        bool is_done = unit < units && !is_cancelled(run) && do_unit(run, unit, scratch, buckets, tree, splats ? &splatting : NULL, &worker);
+        uint64_t unit;
+        bool is_done = !is_cancelled(run) && next_unit(run, &unit) && do_unit(run, unit, scratch, buckets, tree, splats ? &splatting : NULL, &worker);
         if (splats)
             leave_gate(run);
         if (!is_done)
             break;
         tell_progress(run, atomic_fetch_add_explicit(&run->units_done, 1, memory_order_relaxed) + 1);
     }
+}
+
+/* ---- a crew ---- */
+
+static void take_batch(void *context, const void *bytes, size_t size)
+{
+    struct run *run = context;
+    struct sr_crew_reader reader = {.film = run->film, .crew = run->job->crew, .had = run->had, .blocks_before = run->pass->blocks_before};
+    pthread_rwlock_rdlock(&run->film_lock);
+    sr_crew_read(&reader, bytes, size);
+    count(run, &reader.counts);
+    pthread_rwlock_unlock(&run->film_lock);
+    atomic_fetch_add_explicit(&run->units_done, reader.units, memory_order_relaxed);
+    const uint32_t *d = reader.counts.first_dropped;
+    if (reader.counts.has_dropped)
+        remember_dropped(run, d[0], d[1], d[2], d[3]);
+}
+
+static void tick(void *context)
+{
+    struct run *run = context;
+    tell_progress(run, atomic_load(&run->units_done));
+}
+
+/* The threads of this process, and what they make together with those of others. */
+static sr_status work_all(struct run *run, int threads, struct sr_error *error)
+{
+    const struct sr_render_job *job = run->job;
+    const struct sr_render_crew *crew = job->crew;
+    if (!crew) {
+        sr_parallel(threads, work, run);
+        return SR_OK;
+    }
+    if (crew->is_helper && !(run->batches = sr_crew_batches_create(job, run->film, error)))
+        return error->status;
+    struct sr_crew_pass pass = {.tiles = run->tiles_x * run->tiles_y, .blocks = run->blocks, .is_dealt_once = job->integrator.model->begin != NULL,
+                                .threads = threads, .run = run, .take = take_batch, .tick = tick};
+    sr_status status = crew->begin(crew->self, &pass, error);
+    if (status == SR_OK) {
+        sr_parallel(threads, work, run);
+        if (run->batches && !sr_crew_finish(run->batches))
+            status = sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for what is to be sent");
+        if (status == SR_OK)
+            status = crew->end(crew->self, run->cancelled, error);
+        if (run->units_done < units_of(run)) // helpers may have been told to stop while nobody here was at work
+            is_cancelled(run);
+    }
+    sr_crew_batches_destroy(run->batches);
+    return status;
 }
 
 /* Which block the sample of this number is in. */
@@ -359,6 +462,10 @@ sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render
     }
     for (size_t i = 0; run.had && i < pixels; ++i)
         run.had[i] = pass->film->pixels[i].blocks;
+    if (run.had && sr_crew_share(job, run.had, pixels, error) != SR_OK) {
+        sr_arena_free(&arena);
+        return error->status;
+    }
     for (uint32_t i = 0; pass->part && i < run.tiles_x * run.tiles_y; ++i)
         run.tile_blocks[i] = run.first_block;
     if (report->dropped) {
@@ -379,19 +486,19 @@ sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render
     run.last_progress_s = sr_clock_s();
     struct sr_keeper_watch *watch =
         sr_keeper_watch_begin(pass->keeper, &(struct sr_keeper_view){.run = &run, .film = pass->film, .hold = hold, .let_go = let_go, .tell = tell});
-    sr_parallel(threads, work, &run);
+    sr_status status = work_all(&run, threads, error);
     sr_keeper_watch_end(watch);
     pthread_cond_destroy(&run.gate);
     pthread_mutex_destroy(&run.gate_lock);
     pthread_rwlock_destroy(&run.film_lock);
     pthread_mutex_destroy(&run.progress_lock);
     add_to_report(&run, report);
-    if (run.cancelled && pass->keeper)
+    if ((run.cancelled || status != SR_OK) && pass->keeper)
         sr_keeper_write(pass->keeper, report, share_of(&run, run.units_done));
     if (run.shared)
         integrator->model->end(run.shared);
     sr_arena_free(&arena);
-    return run.cancelled ? SR_CANCELLED : SR_OK;
+    return status == SR_OK && run.cancelled ? SR_CANCELLED : status;
 }
 
 /* Whether paths from the lights bring light to any place of the picture. */
@@ -443,9 +550,11 @@ sr_status sr_render(const struct sr_render_job *wanted, struct sr_film **film, s
     *report = (struct sr_render_report){0};
     if (check(job, error) != SR_OK)
         return error->status;
+    if (job->crew && job->crew->meet(job->crew->self, error) != SR_OK)
+        return error->status;
     if (job->adaptive.is_on)
         return sr_render_adaptive(job, film, report, error);
-    if (sr_film_create(&job->film, job->with_aov, film, error) != SR_OK)
+    if (sr_crew_film_create(job, film, error) != SR_OK)
         return error->status;
     struct sr_render_pass pass = pass_of(job);
     struct sr_keeper keeper = {.keep = job->keep, .films = {*film}, .film_count = 1};
@@ -454,6 +563,8 @@ sr_status sr_render(const struct sr_render_job *wanted, struct sr_film **film, s
     sr_status status = has_splats(job) ? sr_film_add_splats(*film, pass.blocks, error) : SR_OK;
     if (status == SR_OK)
         status = sr_keeper_resume(&keeper, report, error);
+    if (status == SR_OK)
+        status = sr_crew_share_keeper(job, &keeper, error);
     pass.start_s = sr_clock_s() - report->render_s;
     if (status == SR_OK && !keeper.is_complete)
         status = sr_render_pass(job, &pass, report, error);
@@ -483,6 +594,8 @@ sr_status sr_render_samples(const struct sr_render_job *wanted, struct sr_render
         return error->status;
     if (job->adaptive.is_on)
         return sr_fail(error, SR_ERROR_USAGE, "adaptive sampling decides by the values of all samples which ones follow: its pictures cannot be made in parts");
+    if (job->crew)
+        return sr_fail(error, SR_ERROR_USAGE, "a range of samples is made by one process: parts are for processes that do not know each other");
     if (range.begin >= range.end || range.end > job->spp)
         return sr_fail(error, SR_ERROR_USAGE, "samples %u-%u: a range within 0-%u was expected", range.begin, range.end, job->spp);
     struct sr_render_pass pass = pass_of(job);

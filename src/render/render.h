@@ -45,6 +45,52 @@ struct sr_render_keep {
     struct sr_log *log;   // told what does not work while the render goes on
 };
 
+/* ---- a crew: processes that work on one picture ----
+ *
+ * Each has a scene of its own and calls sr_render with the same job. One of them, the owner, keeps the film and tells of it;
+ * the helpers hand what they have made over to it, as bytes. A tile is dealt to one process, which makes all its blocks in
+ * order, so that the film's sums are the same for any crew (docs/decisions/0020-ranks.md). How bytes travel is the crew's. */
+
+/* What has been done, in sums; so small that it goes with every batch of bytes. */
+struct sr_render_counts {
+    uint64_t paths, rays, shadow_rays, vertices, dropped;
+    uint32_t has_dropped, first_dropped[4]; // x, y, replicate, sample: the first in picture order
+};
+
+/* A unit that is in the film, for whoever keeps a log. */
+struct sr_crew_unit {
+    uint32_t tile, block;
+    uint32_t x0, y0, x1, y1; // [pixel] of the rendered part
+    double cost_s;           // [s] of a processor
+};
+
+/* One pass over the picture, as a crew sees it. */
+struct sr_crew_pass {
+    uint32_t tiles, blocks;
+    bool is_dealt_once; // each process should get one share of the tiles, at even distances: what its samples share is dear
+    int threads;
+    void *run;
+    void (*take)(void *run, const void *bytes, size_t size); // the owner's: what a helper has handed over; one at a time
+    void (*tick)(void *run);                                 // the owner's: to be called while end waits
+};
+
+struct sr_render_crew {
+    void *self;
+    bool is_helper;
+    /* All have loaded the scene; fails if another could not, or is about to make something else. */
+    sr_status (*meet)(void *self, struct sr_error *error);
+    /* The owner's bytes become everybody's; before, between and after passes. */
+    sr_status (*share)(void *self, void *data, size_t size, struct sr_error *error);
+    sr_status (*begin)(void *self, const struct sr_crew_pass *pass, struct sr_error *error);
+    /* A unit (tile + tiles * block) for a thread of this process, a tile's blocks in order. May wait. false: no more. */
+    bool (*next)(void *self, uint64_t *unit);
+    /* A helper's bytes for the owner's take, in order; from sr_alloc, taken over. */
+    void (*hand)(void *self, void *bytes, size_t size);
+    void (*note)(void *self, const struct sr_crew_unit *unit); // NULL, or called by the owner for each unit of its own
+    /* The owner: once all that was dealt out has been taken, or given up where the render was cancelled. A helper: at once. */
+    sr_status (*end)(void *self, bool is_cancelled, struct sr_error *error);
+};
+
 struct sr_render_job {
     const struct sr_scene *scene;
     struct sr_sensor sensor;
@@ -61,6 +107,7 @@ struct sr_render_job {
     bool with_aov;
     int threads;         // 0: all processors
     int tile;            // [pixel] side of a tile; 0: 16
+    const struct sr_render_crew *crew; // NULL: this process alone
     struct sr_ray_log *log; // NULL, or where the first thread's rays are recorded
     const struct sr_render_keep *keep; // NULL: nothing is kept
 

@@ -89,14 +89,23 @@ static int print_sample(const struct render_arguments *a, const struct sr_render
 
 /* ---- all together ---- */
 
+struct render_crew render_crew;
+
+/* It has no film and writes nothing: another process does. */
+static bool is_helper(void)
+{
+    return render_crew.hooks && render_crew.hooks->is_helper;
+}
+
 enum { MOST_SPP = 1 << 16 }; // where --error or --time says how many are needed
 
 /* The side of a work tile [pixel]: small where a pixel takes many samples, so that a unit of work ends within seconds and
  * progress, partial pictures and Ctrl-C need not wait. The bytes of the picture do not depend on it. */
 static int choose_tile(const struct render_arguments *a, const struct sr_import_result *scene)
 {
-    // where paths from the lights bring light to the picture, a unit must end before a checkpoint can be written
-    double unit_samples = scene->integrator.model->splats ? 1 << 15 : 1 << 17, blocks = a->replicates ? (double)a->replicates : 4;
+    // where paths from the lights bring light to the picture, a unit must end before a checkpoint can be written;
+    // processes that render together are dealt whole tiles, with all their blocks
+    double unit_samples = scene->integrator.model->splats ? 1 << 15 : 1 << 17, blocks = render_crew.hooks ? 1 : a->replicates ? (double)a->replicates : 4;
     double side = sqrt(unit_samples * blocks / scene->spp);
     return a->tile ? (int)a->tile : side < 1 ? 1 : side > 16 ? 16 : (int)side;
 }
@@ -122,7 +131,8 @@ static struct sr_render_job make_job(const struct render_arguments *a, const str
         .jitter_pixel = scene->jitter_pixel && !a->no_pixel_jitter,
         .jitter_lambda = scene->jitter_lambda && !a->no_lambda_jitter,
         .with_aov = with_aov,
-        .threads = (int)a->threads,
+        .threads = a->threads ? (int)a->threads : render_crew.threads,
+        .crew = render_crew.hooks,
         .tile = choose_tile(a, scene),
         .progress = render_on_progress,
         .progress_interval_s = 0.5,
@@ -195,24 +205,27 @@ static int render_scene(const struct render_arguments *a, const struct sr_import
         sr_fail(&error, SR_ERROR_RESOURCE, "not enough memory for what the picture is of");
     if (error.status)
         return command_fail("render", &error);
-    int code = render_check_outputs(a, scene);
+    int code = is_helper() ? 0 : render_check_outputs(a, scene);
     if (code)
         return code;
     if (a->has_range)
         return render_part(&r, &job, identity);
-    struct render_keeping keeping;
-    code = render_keep_begin(a, scene, identity, &job, &keeping);
+    struct render_keeping keeping = {0};
+    if (!is_helper())
+        code = render_keep_begin(a, scene, identity, &job, &keeping);
+    render_crew.identity = identity;
     r.keep = job.keep;
     if (!code && render_check_memory(&job, NULL, &error) != SR_OK)
         code = command_fail("render", &error);
     if (!code) {
-        render_catch_interrupts();
+        if (!is_helper())
+            render_catch_interrupts();
         struct sr_film *film;
         struct sr_render_report report;
         sr_render(&job, &film, &report, &error);
         if (r.on_terminal)
             fputs("\r\033[K", stderr);
-        code = film ? finish(&r, &keeping, film, &report) : command_fail("render", &error);
+        code = film && is_helper() ? 0 : film ? finish(&r, &keeping, film, &report) : command_fail("render", &error);
         sr_film_destroy(film);
     }
     sr_arena_free(&keeping.arena);
@@ -224,14 +237,19 @@ static int run(int argc, char **argv)
     if (command_tells_estimators(argc, argv))
         return 0;
     render_catch_requests();
-    render_end_by_interrupts();
+    if (!is_helper())
+        render_end_by_interrupts();
     struct render_arguments a;
     int code = render_parse(argc, argv, &a);
-    if (!code && a.output_count && !a.has_pixel)
+    if (!code && render_crew.hooks && a.has_range)
+        code = command_usage(&command_render, "parts of a picture are for processes that do not know each other: use steradian render");
+    if (!code && render_crew.processes > 1 && strcmp(a.scene, "-") == 0)
+        code = command_usage(&command_render, "a scene from standard input reaches one process only: write it to a file that all can read");
+    if (!code && a.output_count && !a.has_pixel && !is_helper())
         code = render_check_outputs(&a, NULL);
     if (code)
         return code;
-    a.import.threads = (int)a.threads;
+    a.import.threads = a.threads ? (int)a.threads : render_crew.threads;
     struct sr_error error = {0};
     struct sr_log log = command_log(&a.quiet);
     struct sr_import_result scene;

@@ -41,6 +41,15 @@ struct rendering {
     bool on_terminal;
 };
 
+/* Set by a program whose processes render together; all zero: this one renders alone. */
+struct render_crew {
+    const struct sr_render_crew *hooks;
+    const char *identity; // set by the render, before it meets the others
+    int threads;          // that a process takes where --threads does not say
+    int processes;
+};
+extern struct render_crew render_crew;
+
 /* ---- render.c ---- */
 
 /* How to see the first sample that was not finite again. */
