@@ -84,10 +84,10 @@ sr_status sr_crew_share(const struct sr_render_job *job, uint32_t *numbers, size
 
 sr_status sr_crew_share_keeper(const struct sr_render_job *job, struct sr_keeper *keeper, struct sr_error *error)
 {
-    uint32_t numbers[] = {keeper->pass, keeper->is_resumed, keeper->is_complete};
+    uint32_t numbers[] = {keeper->pass, keeper->kept.is_resumed, keeper->is_complete};
     sr_status status = sr_crew_share(job, numbers, sizeof numbers / sizeof numbers[0], error);
     keeper->pass = numbers[0];
-    keeper->is_resumed = numbers[1];
+    keeper->kept.is_resumed = numbers[1];
     keeper->is_complete = numbers[2];
     return status;
 }
