@@ -175,6 +175,7 @@ struct sr_ray {
     sr_vec3 d;   // direction, unit length unless said otherwise
     float time;  // [1] share of the shutter interval
     float t_max; // [m]
+    bool is_outward; // it leaves a closed mesh, and goes away from what that encloses
 };
 
 /* ---- transforms: a matrix and its inverse, rows first, acting on column vectors ---- */
@@ -247,7 +248,13 @@ struct sr_point {
     float dudx, dudy, dvdx, dvdy; // [1] footprint in texture coordinates
     float time;           // [1] share of the shutter interval
     int32_t face;         // face index that the mesh gives, or 0
+    int8_t outward;       // of a closed mesh: 1: n points away from what it encloses; -1: toward it; 0: of nothing such
 };
+/* Whether w leads out of the closed mesh that x lies on. */
+SR_INLINE bool sr_is_outward(const struct sr_point *x, sr_vec3 w)
+{
+    return sr_dot(w, x->n) * (float)x->outward > 0;
+}
 
 /* An origin for a ray that leaves x toward w: off the surface by no more than the error of p, never through it. */
 SR_INLINE sr_vec3 sr_point_offset(const struct sr_point *x, sr_vec3 w)

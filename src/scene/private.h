@@ -22,6 +22,7 @@ struct placed_shape {
     bool is_plain;            // neither its material nor its light looks at more than p, n and ns
     bool is_mesh;             // of triangles, which Embree meets itself
     bool is_paired;           // which gets them two at a time, those that stay alone with an empty second half
+    int8_t outward;           // as of struct sr_point
 };
 
 /* What instances share; index 0 is the world. */
@@ -30,6 +31,7 @@ struct object {
     struct placed_shape *shapes;   // by geometry number
     uint32_t shape_count;
     RTCScene embree;
+    uint32_t number;               // index in the scene's objects
 };
 
 struct instance {
@@ -37,9 +39,20 @@ struct instance {
     const struct object *object;
     const struct sr_motion *outer, *inner; // NULL, NULL: it stands; else outer after inner, either may be NULL
     struct sr_box *boxes; // of a moving one, at its time steps
+    bool is_watched;      // some of it is among the scene's `closed`
 };
 /* Of a moving instance. */
 struct sr_transform instance_transform(const struct instance *instance, float time);
+
+/* A closed mesh in the world, or what is closed of an instance. */
+enum { CLOSED_MAX = 16, SLIP_ATTEMPTS = 3 };
+struct closed {
+    struct sr_box box;
+    float volume;               // [m^3] of the box
+    int8_t side;                // of a mesh: as of struct sr_point
+    struct placed_shape *shape; // NULL: an instance
+    struct instance *instance;
+};
 
 struct sr_scene {
     struct sr_arena arena;
@@ -54,12 +67,14 @@ struct sr_scene {
     struct sr_array material_list;  // const struct sr_material *, in the order of first use
     struct sr_array degenerates;    // struct degenerate, in the order of description
     const struct object *world;
-    const struct instance *instances; // by geometry number - world's shape count
+    struct instance *instances; // by geometry number - world's shape count
     uint32_t first_instance;
     RTCDevice device;
     RTCScene embree;
     struct sr_lights lights;
     struct sr_box bounds;
+    struct closed closed[CLOSED_MAX];
+    uint32_t closed_count;
     struct sr_scene_counts counts;
 };
 
@@ -85,6 +100,11 @@ struct degenerate {
 /* Counted so that nothing is lost in silence. */
 void scene_count_degenerate(struct sr_scene *scene, const struct sr_shape_def *def);
 void scene_find_media(struct sr_scene *scene); // once rays can be cast
+void scene_find_closed(struct sr_scene *scene); // once the instances are there
+/* Whether a ray that met nothing began within something closed, and not on the way out, and went on to its outside. */
+bool scene_may_have_slipped(const struct sr_scene *scene, const struct sr_ray *ray);
+/* The direction, a few roundings beside; attempt 0 … SLIP_ATTEMPTS - 1. */
+sr_vec3 scene_beside(sr_vec3 d, int attempt);
 void scene_build_embree(struct sr_scene *scene, int threads);
 
 /* Which primitive of the shape the ray caster means; on paired triangles *at is put right. */

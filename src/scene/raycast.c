@@ -18,12 +18,12 @@ static void fill_ray(struct RTCRay *r, sr_vec3 o, sr_vec3 d, float time, float t
     r->flags = 0;
 }
 
-/* The point of an instanced object, in the world. */
-static void to_world(struct sr_point *x, const struct sr_transform *t)
+/* The point of an instanced object, in the world. Its place is known to float's rounding, in both directions: on the way back to where the surface
+ * is, a ray must not be on its other side. roundings: of a coordinate on that way. */
+static void to_world(struct sr_point *x, const struct sr_transform *t, int roundings)
 {
     sr_vec3 error;
     x->p = sr_transform_point_error(t, x->p, x->p_error, &error);
-    x->p_error = error;
     x->n = sr_normalize(sr_transform_normal(t, x->n));
     x->ns = sr_face_forward(sr_normalize(sr_transform_normal(t, x->ns)), x->n);
     x->dpdu = sr_transform_vector(t, x->dpdu);
@@ -31,19 +31,34 @@ static void to_world(struct sr_point *x, const struct sr_transform *t)
     x->dpdus = sr_transform_vector(t, x->dpdus);
     x->dndu = sr_transform_normal(t, x->dndu);
     x->dndv = sr_transform_normal(t, x->dndv);
+    float back[3], gamma = sr_gamma(roundings), *e = &error.x;
+    for (int i = 0; i < 3; ++i)
+        back[i] = gamma * (fabsf(t->inverse[i][0] * x->p.x) + fabsf(t->inverse[i][1] * x->p.y) + fabsf(t->inverse[i][2] * x->p.z) + fabsf(t->inverse[i][3]));
+    for (int i = 0; i < 3; ++i)
+        e[i] += fabsf(t->m[i][0]) * back[0] + fabsf(t->m[i][1]) * back[1] + fabsf(t->m[i][2]) * back[2];
+    x->p_error = error;
 }
 
-/* The same of a moving one. Its place is known to float's rounding, in both directions: on the way back to where the surface
- * is, a ray must not be on its other side. */
-static void to_world_at(struct sr_point *x, const struct instance *instance)
+/* What a ray that seems to have slipped out meets beside. */
+static bool cast_beside(const struct sr_scene *scene, const struct sr_ray *ray, struct RTCRayHit *rh)
 {
-    struct sr_transform t = instance_transform(instance, x->time);
-    to_world(x, &t);
-    float back[3], gamma = sr_gamma(5), *error = &x->p_error.x;
-    for (int i = 0; i < 3; ++i)
-        back[i] = gamma * (fabsf(t.inverse[i][0] * x->p.x) + fabsf(t.inverse[i][1] * x->p.y) + fabsf(t.inverse[i][2] * x->p.z) + fabsf(t.inverse[i][3]));
-    for (int i = 0; i < 3; ++i)
-        error[i] += fabsf(t.m[i][0]) * back[0] + fabsf(t.m[i][1]) * back[1] + fabsf(t.m[i][2]) * back[2];
+    for (int i = 0; i < SLIP_ATTEMPTS && rh->hit.geomID == RTC_INVALID_GEOMETRY_ID; ++i) {
+        struct RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        fill_ray(&rh->ray, ray->o, scene_beside(ray->d, i), ray->time, ray->t_max);
+        rtcIntersect1(scene->embree, &context, rh);
+    }
+    return rh->hit.geomID != RTC_INVALID_GEOMETRY_ID;
+}
+
+static bool is_free(const struct sr_scene *scene, const struct sr_ray *ray, sr_vec3 d)
+{
+    struct RTCRay r;
+    fill_ray(&r, ray->o, d, ray->time, ray->t_max);
+    struct RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(scene->embree, &context, &r);
+    return r.tfar >= 0;
 }
 
 static inline bool raycast(const struct sr_scene *scene, const struct sr_ray *ray, bool bare, struct sr_hit *hit)
@@ -55,7 +70,7 @@ static inline bool raycast(const struct sr_scene *scene, const struct sr_ray *ra
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcIntersect1(scene->embree, &context, &rh);
-    if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+    if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID && !(scene->closed_count && scene_may_have_slipped(scene, ray) && cast_beside(scene, ray, &rh)))
         return false;
 
     const struct instance *instance = rh.hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? NULL : &scene->instances[rh.hit.instID[0] - scene->first_instance];
@@ -77,11 +92,16 @@ static inline bool raycast(const struct sr_scene *scene, const struct sr_ray *ra
         s->shape.model->point(s->shape.self, primitive, at, &hit->point);
     }
     hit->point.time = ray->time;
+    hit->point.outward = s->outward;
     if (SR_UNLIKELY(instance)) {
-        if (instance->boxes)
-            to_world_at(&hit->point, instance);
-        else
-            to_world(&hit->point, &instance->object_to_world);
+        if (!instance->is_watched)
+            hit->point.outward = 0;
+        if (instance->boxes) {
+            struct sr_transform now = instance_transform(instance, ray->time);
+            to_world(&hit->point, &now, 5);
+        } else { // Embree inverts the matrix in float
+            to_world(&hit->point, &instance->object_to_world, 10);
+        }
     }
     hit->t = rh.ray.tfar;
     hit->material = s->material;
@@ -108,19 +128,22 @@ bool sr_raycast_bare(const struct sr_scene *scene, const struct sr_ray *ray, str
 struct sr_ray sr_shadow_ray(const struct sr_point *x, const struct sr_light_sample *s)
 {
     sr_vec3 o = sr_point_offset(x, s->wi);
+    bool is_outward = sr_is_outward(x, s->wi);
     if (isinf(s->distance))
-        return (struct sr_ray){.o = o, .d = s->wi, .time = x->time, .t_max = INFINITY};
-    return (struct sr_ray){.o = o, .d = sr_sub(s->p, o), .time = x->time, .t_max = SHADOW_SHARE};
+        return (struct sr_ray){.o = o, .d = s->wi, .time = x->time, .t_max = INFINITY, .is_outward = is_outward};
+    return (struct sr_ray){.o = o, .is_outward = is_outward, .d = sr_sub(s->p, o), .time = x->time, .t_max = SHADOW_SHARE};
 }
 
 bool sr_is_free(const struct sr_scene *scene, const struct sr_ray *ray)
 {
-    struct RTCRay r;
-    fill_ray(&r, ray->o, ray->d, ray->time, ray->t_max);
-    struct RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(scene->embree, &context, &r);
-    return r.tfar >= 0;
+    if (!is_free(scene, ray, ray->d))
+        return false;
+    if (!scene->closed_count || !scene_may_have_slipped(scene, ray))
+        return true;
+    bool free = true;
+    for (int i = 0; i < SLIP_ATTEMPTS && free; ++i)
+        free = is_free(scene, ray, scene_beside(ray->d, i));
+    return free;
 }
 
 bool sr_visible(const struct sr_scene *scene, const struct sr_point *x, const struct sr_light_sample *s)

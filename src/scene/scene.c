@@ -58,6 +58,8 @@ sr_object_id sr_scene_add_object(struct sr_scene *scene)
         *slot = sr_arena_alloc(&scene->arena, sizeof **slot);
     if (!slot || !*slot)
         no_memory(scene);
+    else
+        (*slot)->number = (uint32_t)scene->objects.count - 1;
     return (sr_object_id){(uint32_t)scene->objects.count - 1}; // the world is the first, its handle "none"
 }
 
@@ -272,6 +274,8 @@ sr_status sr_scene_finish(struct sr_scene *scene, int threads, enum sr_light_cho
     scene->counts.instances = scene->instance_defs.count;
     if (scene->error.status == SR_OK)
         scene_build_embree(scene, threads);
+    if (scene->error.status == SR_OK)
+        scene_find_closed(scene);
     if (scene->error.status == SR_OK)
         scene_find_media(scene);
     if (scene->error.status == SR_OK)

@@ -77,7 +77,7 @@ bool sr_is_free(const struct sr_scene *scene, const struct sr_ray *segment);
 /* A ray that leaves x toward w. */
 static inline struct sr_ray sr_leave(const struct sr_point *x, sr_vec3 w)
 {
-    return (struct sr_ray){.o = sr_point_offset(x, w), .d = w, .time = x->time, .t_max = INFINITY};
+    return (struct sr_ray){.o = sr_point_offset(x, w), .d = w, .time = x->time, .t_max = INFINITY, .is_outward = sr_is_outward(x, w)};
 }
 /* The point's footprint from the sensor ray's differentials, or a cone: fills dpdx … dvdy. */
 void sr_point_set_footprint(struct sr_point *x, sr_vec3 dpdx, sr_vec3 dpdy);
