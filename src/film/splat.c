@@ -74,16 +74,18 @@ void sr_film_splat(struct sr_film *film, const struct sr_filter *filter, uint32_
 {
     double pixels = (double)film->width * film->height;
     float largest = sr_max(fabsf(rgb[0]), sr_max(fabsf(rgb[1]), fabsf(rgb[2])));
-    if (!(isfinite(rgb[0]) && isfinite(rgb[1]) && isfinite(rgb[2])) || (double)largest * fabs(filter->inverse_integral) > LARGEST * pixels) {
-        __atomic_fetch_add(&film->splats->dropped, 1, __ATOMIC_RELAXED);
-        return;
-    }
     // pixels whose centres are less than the radius away
     float x = raster.x - 0.5f - (float)film->settings.x0, y = raster.y - 0.5f - (float)film->settings.y0;
     float first_x = floorf(x - filter->radius.x) + 1, last_x = floorf(x + filter->radius.x);
     float first_y = floorf(y - filter->radius.y) + 1, last_y = floorf(y + filter->radius.y);
-    if (!(last_x >= 0 && last_y >= 0 && first_x < (float)film->width && first_y < (float)film->height))
+    // far beside the picture, near the sensor's own plane, values are large without bound: they are none of the picture's
+    if (last_x < 0 || last_y < 0 || first_x >= (float)film->width || first_y >= (float)film->height)
         return;
+    if (!(isfinite(rgb[0]) && isfinite(rgb[1]) && isfinite(rgb[2])) || isnan(x) || isnan(y) ||
+        (double)largest * fabs(filter->inverse_integral) > LARGEST * pixels) {
+        __atomic_fetch_add(&film->splats->dropped, 1, __ATOMIC_RELAXED);
+        return;
+    }
     int x0 = (int)sr_max(first_x, 0), x1 = (int)sr_min(last_x, (float)(film->width - 1));
     int y0 = (int)sr_max(first_y, 0), y1 = (int)sr_min(last_y, (float)(film->height - 1));
     for (int j = y0; j <= y1; ++j)
