@@ -44,7 +44,7 @@ sr_status meter_direction(const char *name, sr_vec3 *v, struct sr_error *error)
 
 sr_vec3 meter_p_error(sr_vec3 p)
 {
-    return (sr_vec3){1e-6f * (1 + fabsf(p.x)), 1e-6f * (1 + fabsf(p.y)), 1e-6f * (1 + fabsf(p.z))};
+    return (sr_vec3){1e-6f * fabsf(p.x), 1e-6f * fabsf(p.y), 1e-6f * fabsf(p.z)};
 }
 
 void meter_place_on(const struct sr_point *x, float weight, struct sr_meter_place *place)

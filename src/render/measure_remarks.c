@@ -38,6 +38,7 @@ static struct surroundings look_around(const struct measuring *m)
         sr_vec3 wi;
         if (!m->meter->model->place(m->meter->self, (sr_vec2){v[0], v[1]}, &at) || !(m->meter->model->sample(m->meter->self, u, &wi) > 0))
             continue;
+        measure_settle(m->job->scene, &at);
         struct sr_ray ray = sr_leave(&at.x, sr_to_world(&at.frame, wi));
         struct sr_hit hit;
         ++s.rays;

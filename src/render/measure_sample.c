@@ -102,6 +102,7 @@ static sr_spectrum estimate(const struct measuring *m, const struct sr_sampler *
     sr_vec2 where = {u_place[0], u_place[1]};
     if (!(m->cell == UINT32_MAX ? model->place(self, where, &at) : model->place_in(self, m->cell, where, &at)))
         return SR_BLACK;
+    measure_settle(m->job->scene, &at);
     at.x.time = u_place[3];
     bool is_ray = model->is_ray && model->is_ray(self);
     if (integrator->model->gather && !is_ray) {
@@ -166,7 +167,10 @@ bool measure_place(const struct measuring *m, uint32_t replicate, uint32_t sampl
     const struct sr_render_job *job = m->job;
     struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, m->stream, UINT32_MAX - m->round, replicate, sample);
     sr_u4 u = sr_sample4(&sampler, USE_PLACE);
-    return m->meter->model->place(m->meter->self, (sr_vec2){u[0], u[1]}, at);
+    bool is_there = m->meter->model->place(m->meter->self, (sr_vec2){u[0], u[1]}, at);
+    if (is_there)
+        measure_settle(job->scene, at);
+    return is_there;
 }
 
 bool measure_is_cancelled(const struct sr_render_job *job)

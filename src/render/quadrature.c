@@ -287,6 +287,7 @@ static const char *refusal(const struct measuring *m, int32_t max_depth, struct 
     if (model->far || model->raster || !model->place(m->meter->self, (sr_vec2){0.25f, 0.25f}, at) ||
         !model->place(m->meter->self, (sr_vec2){0.75f, 0.625f}, &other) || sr_length2(sr_sub(at->x.p, other.x.p)) > 0)
         return "the meter has an area";
+    measure_settle(m->job->scene, at);
     *is_ray = model->is_ray && model->is_ray(m->meter->self);
     if (max_depth > (*is_ray ? 1 : 0))
         return *is_ray ? "light that is reflected more than once is asked for (quadrature,maxdepth=1 takes one reflection)"
