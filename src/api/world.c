@@ -47,7 +47,7 @@ struct sr_render_job api_job(const struct sr_world *world)
 {
     const struct sr_import_result *i = &world->import;
     return (struct sr_render_job){
-        .scene = i->scene, .sensor = i->sensor, .filter = i->filter, .integrator = i->integrator, .film = i->film, .sampler = i->sampler,
+        .scene = i->scene, .origin = {i->origin[0], i->origin[1], i->origin[2]}, .sensor = i->sensor, .filter = i->filter, .integrator = i->integrator, .film = i->film, .sampler = i->sampler,
         .seed = i->seed, .spp = i->spp, .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX}, .jitter_pixel = i->jitter_pixel, .jitter_lambda = i->jitter_lambda,
     };
 }
@@ -110,10 +110,10 @@ sr_status sr_world_render(const struct sr_world *world, const struct sr_render_s
 sr_status sr_world_irradiance(const struct sr_world *world, const double point_m[3], const double normal[3], uint32_t samples, uint32_t replicates,
                               struct sr_quantity *E_v, struct sr_quantity *E_e)
 {
-    sr_vec3 p = {(float)point_m[0], (float)point_m[1], (float)point_m[2]}, n = {(float)normal[0], (float)normal[1], (float)normal[2]};
+    struct sr_render_job job = api_job(world);
+    sr_vec3 p = sr_render_place(&job, point_m), n = {(float)normal[0], (float)normal[1], (float)normal[2]};
     if (samples < 1 || replicates < 2 || !sr_is_finite(p) || !sr_is_finite(n) || !(sr_length(n) > 0))
         return SR_ERROR_USAGE;
-    struct sr_render_job job = api_job(world);
     struct sr_irradiance E = sr_render_irradiance(&job, p, n, samples, replicates);
     if (isnan(E.E_v))
         return SR_ERROR_RESOURCE;

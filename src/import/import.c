@@ -44,6 +44,33 @@ static sr_status describe(struct sr_pbrt_build *b, enum sr_light_choice *choice)
     return status;
 }
 
+/* Whether the scene is so far from the origin that floats tell: FAR times its size. Then *origin is moved to near its middle, by a
+ * round number. */
+static bool is_far(struct sr_box box, double origin[3])
+{
+    enum { FAR = 64 };
+    sr_vec3 centre = sr_box_centre(box), diagonal = sr_box_diagonal(box);
+    double distance = 0, size = (double)sr_max_component(diagonal);
+    const float *c = &centre.x;
+    for (int i = 0; i < 3; ++i)
+        distance = fmax(distance, fabs((double)c[i]));
+    if (sr_box_is_empty(box) || !isfinite(distance) || !(distance > FAR * size))
+        return false;
+    double step = exp2(ceil(log2(fmax(size, 0x1p-24 * distance))));
+    for (int i = 0; i < 3; ++i)
+        origin[i] += step * nearbyint((double)c[i] / step);
+    return true;
+}
+
+static void tell_far(const char *path, const double o[3], struct sr_box box, struct sr_log *log)
+{
+    double distance = fmax(fabs(o[0]), fmax(fabs(o[1]), fabs(o[2]))), size = (double)sr_max_component(sr_box_diagonal(box)), step = distance * 0x1p-23;
+    sr_log(log, step > 1e-5 * size ? SR_WARNING : SR_INFO,
+           "%s: the scene is %.3g m large and stands at (%g, %g, %g) m: it is computed about there. What transforms place keeps its place; coordinates "
+           "written out in shapes and meters are known to %.2g m",
+           path, size, o[0], o[1], o[2], step);
+}
+
 static sr_status import(const char *path, const struct sr_import_options *options, struct sr_import_result *result,
                         struct sr_log *log, struct sr_error *error)
 {
@@ -89,6 +116,18 @@ sr_status sr_import_pbrt(const char *path, const struct sr_import_options *optio
     if (!result->scene)
         return sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", path);
     sr_status status = import(path, options ? options : &nothing, result, log, error);
+    double origin[3] = {0, 0, 0};
+    // again, about the middle; what stands very far away shows its size only then
+    for (int i = 0; i < 3 && status == SR_OK && !result->stays && is_far(sr_scene_bounds(result->scene), origin); ++i) {
+        sr_import_result_free(result);
+        result->scene = sr_scene_create();
+        if (!result->scene)
+            return sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", path);
+        memcpy(result->origin, origin, sizeof origin);
+        status = import(path, options ? options : &nothing, result, NULL, error);
+    }
+    if (status == SR_OK && (origin[0] != 0 || origin[1] != 0 || origin[2] != 0))
+        tell_far(path, origin, sr_scene_bounds(result->scene), log);
     if (status != SR_OK)
         sr_import_result_free(result);
     return status;

@@ -41,6 +41,7 @@ struct sr_declared_uncertainty {
 /* Everything that a render needs; owned by the scene's arena but for the scene itself. */
 struct sr_import_result {
     struct sr_scene *scene;
+    double origin[3]; // [m] of the scene's space, in the file's: other than 0 where the scene is far away for its size
     struct sr_sensor sensor;
     struct sr_filter filter;
     struct sr_integrator integrator;
@@ -53,6 +54,7 @@ struct sr_import_result {
     uint32_t meter_count;
     const struct sr_declared_uncertainty *uncertainties;
     uint32_t uncertainty_count;
+    bool stays;    // Option "rendercoordsys" "world": wherever it is
     uint64_t hash; // of all bytes that were read: scene files, meshes, images
     double read_s; // [s] reading and describing, without building
 };

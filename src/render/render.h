@@ -103,6 +103,7 @@ struct sr_render_job {
     uint32_t replicates; // 0: an ordinary image; R >= 2: R independently scrambled nets, for Student's intervals
     struct sr_render_adaptive adaptive; // then replicates is not looked at
     struct sr_lambda_range lambda; // [nm]
+    double origin[3];    // [m] of the scene's space, as the import gives it: other than 0 where the scene is far away
     bool jitter_pixel, jitter_lambda; // false only to look into things
     bool with_aov;
     int threads;         // 0: all processors
@@ -116,6 +117,12 @@ struct sr_render_job {
     void *user;
     const atomic_bool *cancel; // NULL, or set by somebody who wants to stop; what is done is kept
 };
+
+/* A point of the world [m], where the scene has it. */
+static inline sr_vec3 sr_render_place(const struct sr_render_job *job, const double world[3])
+{
+    return (sr_vec3){(float)(world[0] - job->origin[0]), (float)(world[1] - job->origin[1]), (float)(world[2] - job->origin[2])};
+}
 
 struct sr_render_report {
     double render_s;

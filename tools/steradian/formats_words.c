@@ -154,7 +154,7 @@ const struct format_word format_meanings[] = {
     {"Film", "sensor", "how light becomes red, green and blue"},
     {"Film", "filename", "the picture, where -o names none"},
     {"Camera", "mapping", "how directions become places of the picture"},
-    {"Option", "rendercoordsys", "where pbrt puts the origin; read, unused"},
+    {"Option", "rendercoordsys", "world: coordinates stay those of the file, however far from the origin; else read, unused"},
     {"Option", "units", "what the numbers of emission spectra mean (units.md)"},
     {"Uncertainty", "material", "whose parameter is meant: a name, or \"#2\": the second Material"},
     {"Uncertainty", "light", "or a light: \"#2\" is the second"},

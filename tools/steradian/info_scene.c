@@ -52,6 +52,7 @@ static void print_scene(const char *path, const struct sr_import_result *r, unsi
     struct kinds lights = count_lights(r->scene);
     struct sr_box box = sr_scene_bounds(r->scene);
     const struct sr_film_settings *f = &r->film;
+    const double *o = r->origin;
     printf("%s: a scene, hash %016llx, %u warning%s\n", path, (unsigned long long)r->hash, warnings,
            warnings == 1 ? "" : "s");
     printf("  sensor       %s\n", r->sensor.model->name);
@@ -80,20 +81,20 @@ static void print_scene(const char *path, const struct sr_import_result *r, unsi
     if (sr_box_is_empty(box))
         printf("  bounds       nothing there\n");
     else
-        printf("  bounds       (%g, %g, %g) to (%g, %g, %g) m\n", (double)box.lo.x + 0, (double)box.lo.y + 0,
-               (double)box.lo.z + 0, (double)box.hi.x + 0, (double)box.hi.y + 0, (double)box.hi.z + 0);
+        printf("  bounds       (%.9g, %.9g, %.9g) to (%.9g, %.9g, %.9g) m\n", (double)box.lo.x + o[0], (double)box.lo.y + o[1],
+               (double)box.lo.z + o[2], (double)box.hi.x + o[0], (double)box.hi.y + o[1], (double)box.hi.z + o[2]);
     printf("  memory       geometry %.2f MiB, acceleration %.2f MiB, peak %.1f MiB\n", MiB(c.geometry_B),
            MiB(c.acceleration_B), MiB(sr_peak_memory_B()));
     printf("  time         read %.3f s, built %.3f s\n", r->read_s, c.build_s);
 }
 
 /* -0 is told as 0. */
-static json_t *bounds_json(struct sr_box box)
+static json_t *bounds_json(struct sr_box box, const double o[3])
 {
     if (sr_box_is_empty(box))
         return json_null();
-    return json_pack("{s:[f,f,f], s:[f,f,f], s:s}", "min", (double)box.lo.x + 0, (double)box.lo.y + 0,
-                     (double)box.lo.z + 0, "max", (double)box.hi.x + 0, (double)box.hi.y + 0, (double)box.hi.z + 0,
+    return json_pack("{s:[f,f,f], s:[f,f,f], s:s}", "min", (double)box.lo.x + o[0], (double)box.lo.y + o[1],
+                     (double)box.lo.z + o[2], "max", (double)box.hi.x + o[0], (double)box.hi.y + o[1], (double)box.hi.z + o[2],
                      "unit", "m");
 }
 
@@ -126,7 +127,7 @@ static int print_scene_json(const char *path, const struct sr_import_result *r, 
         (json_int_t)c.quadrics, "curves", (json_int_t)c.curves, "instances", (json_int_t)c.instances, "objects", (json_int_t)c.objects, "materials",
         (json_int_t)c.materials, "primitives_without_area", (json_int_t)c.degenerate, "primitives_too_large", (json_int_t)c.too_large,
         "primitives_not_finite", (json_int_t)c.not_finite, "duplicate_triangles", (json_int_t)sr_scene_count_duplicates(r->scene), "bounds",
-        bounds_json(sr_scene_bounds(r->scene)), "memory", "geometry_B", (json_int_t)c.geometry_B, "acceleration_B",
+        bounds_json(sr_scene_bounds(r->scene), r->origin), "memory", "geometry_B", (json_int_t)c.geometry_B, "acceleration_B",
         (json_int_t)c.acceleration_B, "peak_B", (json_int_t)sr_peak_memory_B(), "time", "read_s",
         command_json_number(r->read_s), "build_s", command_json_number(c.build_s));
     return command_print_json("info", j);

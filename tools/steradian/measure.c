@@ -274,7 +274,7 @@ sr_status measure_spectrometer(const struct measure_arguments *a, const struct s
 struct sr_render_job measure_job(const struct measure_arguments *a, const struct sr_import_result *scene)
 {
     return (struct sr_render_job){
-        .scene = scene->scene,
+        .scene = scene->scene, .origin = {scene->origin[0], scene->origin[1], scene->origin[2]},
         .integrator = scene->integrator,
         .sampler = !a->sampler ? scene->sampler : strcmp(a->sampler, "sobol") == 0 ? SR_SAMPLER_SOBOL : SR_SAMPLER_INDEPENDENT,
         .seed = a->has_seed ? (uint32_t)a->seed : scene->seed,

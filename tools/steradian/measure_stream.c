@@ -71,7 +71,7 @@ int measure_stream(const struct measure_arguments *a, const struct sr_render_job
             return bad_line(number, a, "this line cannot be read");
         if (is_empty)
             continue;
-        sr_vec3 p = {(float)v[0], (float)v[1], (float)v[2]}, d = {(float)v[3], (float)v[4], (float)v[5]};
+        sr_vec3 p = sr_render_place(job, v), d = {(float)v[3], (float)v[4], (float)v[5]};
         struct sr_arena arena = {0};
         struct sr_error error = {0};
         struct sr_meter meter = a->input == MEASURE_RAYS ? sr_meter_radiance_along(&arena, p, d, 0) : sr_meter_irradiance_at(&arena, p, d);

@@ -80,9 +80,10 @@ static int print_sample(const struct render_arguments *a, const struct sr_render
            (unsigned)a->pixel[0], (unsigned)a->pixel[1], (unsigned long long)a->sample, (double)rgb[0], (double)rgb[1],
            (double)rgb[2], is_finite ? "" : " (not finite)", (unsigned long long)worker.rays,
            (unsigned long long)worker.shadow_rays, (unsigned long long)worker.vertices);
+    const double *o = job->origin;
     if (first.is_hit)
-        printf("first surface: p %.9g %.9g %.9g m, n %.6g %.6g %.6g, object %u, material %u\n", (double)first.p.x,
-               (double)first.p.y, (double)first.p.z, (double)first.n.x, (double)first.n.y, (double)first.n.z,
+        printf("first surface: p %.9g %.9g %.9g m, n %.6g %.6g %.6g, object %u, material %u\n", (double)first.p.x + o[0],
+               (double)first.p.y + o[1], (double)first.p.z + o[2], (double)first.n.x, (double)first.n.y, (double)first.n.z,
                first.object, first.material);
     return 0;
 }
@@ -115,7 +116,7 @@ static struct sr_render_job make_job(const struct render_arguments *a, const str
 {
     bool has_target = a->adaptive.error > 0 || a->adaptive.time_s > 0;
     return (struct sr_render_job){
-        .scene = scene->scene,
+        .scene = scene->scene, .origin = {scene->origin[0], scene->origin[1], scene->origin[2]},
         .sensor = scene->sensor,
         .filter = scene->filter,
         .integrator = scene->integrator,

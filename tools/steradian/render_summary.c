@@ -38,7 +38,7 @@ json_t *render_measure(const struct render_arguments *a, const struct sr_render_
     for (int i = 0; i < a->meter_count; ++i) {
         const double *m = a->meters[i];
         struct sr_irradiance E =
-            sr_render_irradiance(job, (sr_vec3){(float)m[0], (float)m[1], (float)m[2]},
+            sr_render_irradiance(job, sr_render_place(job, m),
                                  (sr_vec3){(float)m[3], (float)m[4], (float)m[5]}, METER_SAMPLES, METER_REPLICATES);
         struct sr_quantity E_v = {.value = E.E_v, .u = E.E_v_error, .degrees = E.degrees};
         struct sr_quantity E_e = {.value = E.E_e, .u = E.E_e_error, .degrees = E.degrees};

@@ -155,14 +155,20 @@ extern const struct sr_param *const sr_pbrt_film_params, *const sr_pbrt_sampler_
 /* lens.c: the files of a camera with a lens. */
 sr_status sr_pbrt_lens(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, struct sr_sensor_lens *lens);
 
-/* motion.c: whether a transform differs at the shutter's ends; and the motion between them, or that of its inverses. */
+/* placing.c: the transform when the shutter opens (closes), into the scene's space: the world, or about b->result->origin. Those of shapes of
+ * objects lead into the object's space; the camera's lead out of the world, and are turned round. */
+enum sr_pbrt_place { SR_PBRT_TO_WORLD, SR_PBRT_TO_OBJECT, SR_PBRT_FROM_WORLD };
+struct sr_transform sr_pbrt_transform_of(const struct sr_pbrt_build *b, uint32_t index, enum sr_pbrt_place place);
+struct sr_transform sr_pbrt_transform_at_end(const struct sr_pbrt_build *b, uint32_t index, enum sr_pbrt_place place);
+static inline enum sr_pbrt_place sr_pbrt_place_of(const struct sr_pbrt_shape *s)
+{
+    return s->object1 ? SR_PBRT_TO_OBJECT : SR_PBRT_TO_WORLD;
+}
+
+/* motion.c: whether a transform differs at the shutter's ends; and the motion between them. */
 bool sr_pbrt_moves(const struct sr_pbrt_build *b, uint32_t transform);
-sr_status sr_pbrt_motion(struct sr_pbrt_build *b, uint32_t transform, bool is_inverted, const char *what, struct sr_location where,
+sr_status sr_pbrt_motion(struct sr_pbrt_build *b, uint32_t transform, enum sr_pbrt_place place, const char *what, struct sr_location where,
                          const struct sr_motion **out);
 
-static inline const struct sr_pbrt_transform *sr_pbrt_transform_of(const struct sr_pbrt_build *b, uint32_t index)
-{
-    return SR_PBRT_AT(b->d->transforms, struct sr_pbrt_transform, index);
-}
 
 #endif

@@ -72,13 +72,19 @@ static void *push(struct sr_compose *c, struct sr_array *array, size_t size)
     return item;
 }
 
-uint32_t sr_compose_transform(struct sr_compose *c, const struct sr_transform *t)
+uint32_t sr_compose_matrix(struct sr_compose *c, const struct sr_matrix *a)
 {
     struct sr_pbrt_transform *slot = push(c, &c->d->transforms, sizeof *slot);
     if (!slot)
         return 0;
-    *slot = (struct sr_pbrt_transform){*t, *t};
+    *slot = (struct sr_pbrt_transform){*a, *a};
     return (uint32_t)c->d->transforms.count - 1;
+}
+
+uint32_t sr_compose_transform(struct sr_compose *c, const struct sr_transform *t)
+{
+    struct sr_matrix a = sr_matrix_of(t);
+    return sr_compose_matrix(c, &a);
 }
 
 /* ---- parameters ---- */
@@ -204,9 +210,9 @@ void sr_compose_setting(struct sr_compose *c, const char *directive, const char 
 
 void sr_compose_camera(struct sr_compose *c, const char *model, const struct sr_transform *camera_to_world)
 {
-    struct sr_transform world_to_camera = sr_transform_invert(camera_to_world);
+    struct sr_matrix to_world = sr_matrix_of(camera_to_world), to_camera = sr_matrix_invert(&to_world);
     uint32_t kept = c->transform;
-    c->transform = sr_compose_transform(c, &world_to_camera);
+    c->transform = sr_compose_matrix(c, &to_camera);
     c->d->camera = entity(c, "Camera", NULL, model);
     c->transform = kept;
 }

@@ -39,6 +39,7 @@ void sr_compose_begin(struct sr_compose *c, const char *path, struct sr_arena *d
                       struct sr_pbrt_description *d, struct sr_error *error);
 sr_status sr_compose_end(struct sr_compose *c);
 
+uint32_t sr_compose_matrix(struct sr_compose *c, const struct sr_matrix *a);
 uint32_t sr_compose_transform(struct sr_compose *c, const struct sr_transform *t); // its number, for c->transform
 /* A copy, kept as long as the description. */
 const char *sr_compose_word(struct sr_compose *c, const char *word);

@@ -28,7 +28,8 @@ static bool same_state(const struct sr_pbrt_build *b, const struct sr_pbrt_shape
     return !y->name && x->material.index == y->material.index && same_text(x->material.name, y->material.name) &&
            x->area_light1 == y->area_light1 && x->object1 == y->object1 && x->reverse_orientation == y->reverse_orientation &&
            same_text(x->inside, y->inside) && same_text(x->outside, y->outside) && same_alpha(x, y) &&
-           (i == j || memcmp(sr_pbrt_transform_of(b, i), sr_pbrt_transform_of(b, j), sizeof(struct sr_pbrt_transform)) == 0);
+           (i == j || memcmp(SR_PBRT_AT(b->d->transforms, struct sr_pbrt_transform, i), SR_PBRT_AT(b->d->transforms, struct sr_pbrt_transform, j),
+                             sizeof(struct sr_pbrt_transform)) == 0);
 }
 
 static sr_status bind_curve(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, struct sr_shape_curve *curve)

@@ -69,7 +69,7 @@ bool sr_pbrt_description_start(struct sr_pbrt_description *d, struct sr_arena *d
     if (!material || !transform)
         return false;
     *material = default_entity("Material", "diffuse");
-    transform->start = transform->end = sr_transform_identity();
+    transform->start = transform->end = sr_matrix_identity();
     return true;
 }
 

@@ -6,7 +6,7 @@
 #ifndef SR_IMPORT_PBRT_DESCRIPTION_H
 #define SR_IMPORT_PBRT_DESCRIPTION_H
 
-#include "math/math.h"
+#include "import/pbrt/matrix.h"
 #include "spectrum/spectrum.h"
 
 /* ---- parameters ---- */
@@ -61,7 +61,7 @@ struct sr_pbrt_entity {
 
 /* The current transform at the shutter's opening and closing. */
 struct sr_pbrt_transform {
-    struct sr_transform start, end;
+    struct sr_matrix start, end;
 };
 
 struct sr_pbrt_texture {

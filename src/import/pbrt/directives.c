@@ -24,7 +24,7 @@ static sr_status read_single(struct sr_pbrt_parser *p, struct sr_pbrt_entity *en
 static sr_status read_camera(struct sr_pbrt_parser *p)
 {
     sr_status status = read_single(p, &p->d->camera);
-    struct sr_pbrt_transform t = {sr_transform_invert(&p->state.ctm.start), sr_transform_invert(&p->state.ctm.end)};
+    struct sr_pbrt_transform t = {sr_matrix_invert(&p->state.ctm.start), sr_matrix_invert(&p->state.ctm.end)};
     p->d->camera_medium = p->state.outside;
     p->d->camera_medium_where = p->state.medium_where;
     return status == SR_OK ? sr_pbrt_name_coordinates(p, "camera", &t) : status;
@@ -87,7 +87,7 @@ static sr_status read_option(struct sr_pbrt_parser *p)
 
 static sr_status read_world_begin(struct sr_pbrt_parser *p)
 {
-    struct sr_transform one = sr_transform_identity();
+    struct sr_matrix one = sr_matrix_identity();
     p->d->has_world = true;
     p->state.ctm = (struct sr_pbrt_transform){one, one};
     p->state.transform = UINT32_MAX;

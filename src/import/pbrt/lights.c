@@ -94,7 +94,7 @@ static sr_status add_light(struct sr_pbrt_build *b, const struct sr_pbrt_light *
         status = sr_pbrt_bind(b, m->params, e, (struct sr_pbrt_use){SR_PARAM_ALBEDO, false}, self);
     size_t at = sr_light_transform_offset(m);
     if (at != SIZE_MAX)
-        *(struct sr_transform *)(self + at) = sr_pbrt_transform_of(b, e->transform)->start;
+        *(struct sr_transform *)(self + at) = sr_pbrt_transform_of(b, e->transform, SR_PBRT_TO_WORLD);
     if ((at = sr_light_space_offset(m)) != SIZE_MAX)
         *(enum sr_colour_space_id *)(self + at) = e->space;
     if ((at = sr_light_absolute_offset(m)) != SIZE_MAX)

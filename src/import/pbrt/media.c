@@ -51,7 +51,7 @@ static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, s
         status = check_preset(b, e);
     if (status != SR_OK)
         return status;
-    self->medium_to_world = sr_pbrt_transform_of(b, e->transform)->start;
+    self->medium_to_world = sr_pbrt_transform_of(b, e->transform, SR_PBRT_TO_WORLD);
     self->space = e->space;
     self->is_absolute = b->result->units == SR_UNITS_SI;
     struct sr_error inner = {0};

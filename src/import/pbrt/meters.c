@@ -145,7 +145,8 @@ static sr_status build_meter(struct sr_pbrt_build *b, const struct sr_pbrt_entit
     if (status != SR_OK)
         return status;
     struct sr_error inner = {0};
-    if (m->prepare(self, &sr_pbrt_transform_of(b, e->transform)->start, b->arena, &inner) != SR_OK)
+    struct sr_transform to_world = sr_pbrt_transform_of(b, e->transform, SR_PBRT_TO_WORLD);
+    if (m->prepare(self, &to_world, b->arena, &inner) != SR_OK)
         return sr_pbrt_wrap(b, e, &inner);
     meters[count] = (struct sr_meter){m, self};
     sr_pbrt_warn_unused(b, e, m->params, sr_meter_common_params);

@@ -10,17 +10,16 @@
 
 bool sr_pbrt_moves(const struct sr_pbrt_build *b, uint32_t transform)
 {
-    const struct sr_pbrt_transform *t = sr_pbrt_transform_of(b, transform);
+    const struct sr_pbrt_transform *t = SR_PBRT_AT(b->d->transforms, struct sr_pbrt_transform, transform);
     return memcmp(t->start.m, t->end.m, sizeof t->start.m) != 0;
 }
 
-sr_status sr_pbrt_motion(struct sr_pbrt_build *b, uint32_t transform, bool is_inverted, const char *what, struct sr_location where, const struct sr_motion **out)
+sr_status sr_pbrt_motion(struct sr_pbrt_build *b, uint32_t transform, enum sr_pbrt_place place, const char *what, struct sr_location where, const struct sr_motion **out)
 {
-    const struct sr_pbrt_transform *t = sr_pbrt_transform_of(b, transform);
     struct sr_motion *m = sr_arena_alloc(b->arena, sizeof *m);
     if (!m)
         return sr_pbrt_no_memory(b);
-    struct sr_transform start = is_inverted ? sr_transform_invert(&t->start) : t->start, end = is_inverted ? sr_transform_invert(&t->end) : t->end;
+    struct sr_transform start = sr_pbrt_transform_of(b, transform, place), end = sr_pbrt_transform_at_end(b, transform, place);
     float open = b->shutter_open, length = b->shutter_close - open;
     float t0 = b->d->transform_start_time, t1 = b->d->transform_end_time;
     // a shutter that opens for no time sees one moment

@@ -277,7 +277,7 @@ sr_status sr_pbrt_include(struct sr_pbrt_parser *p, const char *name)
 static sr_status start(struct sr_pbrt_parser *p, const char *path, struct sr_arena *data, struct sr_log *log,
                        struct sr_pbrt_description *d, struct sr_error *error)
 {
-    struct sr_transform one = sr_transform_identity();
+    struct sr_matrix one = sr_matrix_identity();
     *p = (struct sr_pbrt_parser){.d = d, .error = error, .main_path = path};
     p->state = (struct sr_pbrt_state){.ctm = {one, one}, .at_start = true, .at_end = true, .space = SR_SRGB};
     return sr_pbrt_description_start(d, data, log) ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", path);

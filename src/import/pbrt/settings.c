@@ -204,7 +204,7 @@ static sr_status build_sensor(struct sr_pbrt_build *b)
         return status;
     if (m->wants_lens && sr_pbrt_lens(b, e, &((struct sr_sensor_with_lens *)self)->lens) != SR_OK)
         return b->error->status;
-    struct sr_transform camera_to_world = sr_transform_invert(&sr_pbrt_transform_of(b, e->transform)->start);
+    struct sr_transform camera_to_world = sr_pbrt_transform_of(b, e->transform, SR_PBRT_FROM_WORLD);
     struct sr_sensor_raster raster = {(uint32_t)b->result->film.width, (uint32_t)b->result->film.height};
     struct sr_error inner = {0};
     const struct sr_motion *motion = NULL;
@@ -212,7 +212,7 @@ static sr_status build_sensor(struct sr_pbrt_build *b)
     b->shutter_open = sr_min(common->shutter_open, common->shutter_close);
     b->shutter_close = sr_max(common->shutter_open, common->shutter_close);
     if (sr_pbrt_moves(b, e->transform)) {
-        if (sr_pbrt_motion(b, e->transform, true, "Camera", e->where, &motion) != SR_OK)
+        if (sr_pbrt_motion(b, e->transform, SR_PBRT_FROM_WORLD, "Camera", e->where, &motion) != SR_OK)
             return b->error->status;
         camera_to_world = sr_transform_identity();
     }
@@ -227,6 +227,14 @@ static sr_status build_sensor(struct sr_pbrt_build *b)
             return sr_pbrt_no_memory(b);
         b->result->film.camera = motion ? motion : still;
         b->result->film.of_points = b->is_in_world ? NULL : b->result->film.camera;
+        const double *o = b->result->origin;
+        if (b->is_in_world && (o[0] != 0 || o[1] != 0 || o[2] != 0)) {
+            struct sr_motion *back = sr_arena_alloc(b->arena, sizeof *back);
+            struct sr_transform away = sr_transform_translate((sr_vec3){(float)-o[0], (float)-o[1], (float)-o[2]});
+            if (!back || !sr_motion_make(&away, &away, 0, 1, back))
+                return sr_pbrt_no_memory(b);
+            b->result->film.of_points = back;
+        }
     }
     // what a sensor without colour curves of its own makes of the shutter: the picture times the seconds
     b->result->film.exposure_time = common->shutter_close - common->shutter_open;
@@ -364,6 +372,8 @@ static sr_status build_options(struct sr_pbrt_build *b)
         if (is_bool && (o->value.type != SR_PBRT_BOOL || o->value.count != 1))
             return sr_pbrt_fail(b->d, o->value.where, b->error, SR_ERROR_INPUT, "Option \"%s\": expected one bool",
                                 o->value.name);
+        if (strcmp(o->name, "rendercoordsys") == 0)
+            b->result->stays = o->value.type == SR_PBRT_STRING_TYPE && o->value.count == 1 && strcmp(o->value.strings[0], "world") == 0;
         if (strcmp(o->name, "disablepixeljitter") == 0)
             b->result->jitter_pixel = !is_on;
         else if (strcmp(o->name, "disablewavelengthjitter") == 0)

@@ -121,7 +121,7 @@ static bool moves(const struct sr_pbrt_build *b, const struct sr_pbrt_shape *s)
 /* What moves is made in its own space. */
 static struct sr_shape_placement placement_of(const struct sr_pbrt_build *b, const struct sr_pbrt_shape *s)
 {
-    struct sr_transform own = moves(b, s) ? sr_transform_identity() : sr_pbrt_transform_of(b, s->entity.transform)->start;
+    struct sr_transform own = moves(b, s) ? sr_transform_identity() : sr_pbrt_transform_of(b, s->entity.transform, sr_pbrt_place_of(s));
     return (struct sr_shape_placement){own, s->reverse_orientation};
 }
 
@@ -204,7 +204,7 @@ static sr_status displace(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s
     if (status != SR_OK || !sr_pbrt_find(&s->entity.params, "displacement"))
         return status;
     struct sr_error inner = {0};
-    struct sr_transform to_world = sr_pbrt_transform_of(b, s->entity.transform)->start;
+    struct sr_transform to_world = sr_pbrt_transform_of(b, s->entity.transform, SR_PBRT_TO_WORLD); // as textures take it
     return sr_pbrt_displace(ply, &to_world, d.edge_length * b->edge_scale, d.displacement, &inner) == SR_OK ? SR_OK
                                                                                                             : sr_pbrt_wrap(b, &s->entity, &inner);
 }
@@ -353,7 +353,7 @@ static sr_status add_shape(struct adder *a, const struct sr_pbrt_shape *s, struc
     float alpha;
     bool is_opaque = !common.alpha.model || (sr_texture_is_constant_float(common.alpha, &alpha) && alpha >= 1);
     def.alpha = is_opaque ? (struct sr_texture){NULL, NULL} : common.alpha;
-    if (moves(b, s) && sr_pbrt_motion(b, s->entity.transform, false, "Shape", s->entity.where, &def.motion) != SR_OK)
+    if (moves(b, s) && sr_pbrt_motion(b, s->entity.transform, sr_pbrt_place_of(s), "Shape", s->entity.where, &def.motion) != SR_OK)
         return b->error->status;
     if (sr_pbrt_moves(b, s->entity.transform) && !def.motion)
         sr_pbrt_warn(b->d, s->entity.where, "a shape that shines cannot move: it stands where it is when the shutter opens");
@@ -393,9 +393,10 @@ static sr_status add_instances(struct adder *a)
         const struct sr_motion *motion;
         if (!object.index1)
             continue;
+        struct sr_transform to_world = sr_pbrt_transform_of(b, instance->transform, SR_PBRT_TO_WORLD);
         if (!sr_pbrt_moves(b, instance->transform))
-            sr_scene_add_instance(b->result->scene, object, &sr_pbrt_transform_of(b, instance->transform)->start);
-        else if (sr_pbrt_motion(b, instance->transform, false, "ObjectInstance", instance->where, &motion) == SR_OK)
+            sr_scene_add_instance(b->result->scene, object, &to_world);
+        else if (sr_pbrt_motion(b, instance->transform, SR_PBRT_TO_WORLD, "ObjectInstance", instance->where, &motion) == SR_OK)
             sr_scene_add_moving_instance(b->result->scene, object, motion);
         else
             return b->error->status;

@@ -118,7 +118,8 @@ static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_texture *t, 
         return sr_pbrt_no_memory(b);
     struct sr_pbrt_use binding = {t->is_float ? SR_PARAM_ALBEDO : use, !t->is_float};
     sr_status status = sr_pbrt_bind(b, m->params, e, binding, self);
-    struct sr_transform world_to_texture = sr_transform_invert(&sr_pbrt_transform_of(b, e->transform)->start);
+    struct sr_transform texture_to_world = sr_pbrt_transform_of(b, e->transform, SR_PBRT_TO_WORLD),
+                        world_to_texture = sr_transform_invert(&texture_to_world);
     bool is_2d = m->mapping_offset != SR_TEXTURE_NOWHERE;
     if (status == SR_OK && is_2d) {
         struct sr_mapping *mapping = (struct sr_mapping *)(self + m->mapping_offset);

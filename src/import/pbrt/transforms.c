@@ -6,16 +6,16 @@
 
 #include <string.h>
 
-static sr_status set(struct sr_pbrt_parser *p, const struct sr_transform *t, bool is_relative)
+static sr_status set(struct sr_pbrt_parser *p, const struct sr_matrix *a, bool is_relative)
 {
-    if (!sr_transform_is_valid(t))
+    struct sr_transform t = sr_matrix_to_transform(a);
+    if (!sr_transform_is_valid(&t))
         return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "%s: expected a transform that can be inverted",
                             p->directive);
-    struct sr_transform *ctm[2] = {p->state.at_start ? &p->state.ctm.start : NULL,
-                                   p->state.at_end ? &p->state.ctm.end : NULL};
+    struct sr_matrix *ctm[2] = {p->state.at_start ? &p->state.ctm.start : NULL, p->state.at_end ? &p->state.ctm.end : NULL};
     for (int i = 0; i < 2; ++i)
         if (ctm[i])
-            *ctm[i] = is_relative ? sr_transform_multiply(ctm[i], t) : *t;
+            *ctm[i] = is_relative ? sr_matrix_multiply(ctm[i], a) : *a;
     p->state.transform = UINT32_MAX;
     return SR_OK;
 }
@@ -36,8 +36,8 @@ uint32_t sr_pbrt_store_transform(struct sr_pbrt_parser *p)
 
 sr_status sr_pbrt_read_identity(struct sr_pbrt_parser *p)
 {
-    struct sr_transform t = sr_transform_identity();
-    return set(p, &t, false);
+    struct sr_matrix a = sr_matrix_identity();
+    return set(p, &a, false);
 }
 
 sr_status sr_pbrt_read_translate(struct sr_pbrt_parser *p)
@@ -45,8 +45,8 @@ sr_status sr_pbrt_read_translate(struct sr_pbrt_parser *p)
     double v[3];
     if (sr_pbrt_read_numbers(p, 3, v) != SR_OK)
         return p->error->status;
-    struct sr_transform t = sr_transform_translate((sr_vec3){(float)v[0], (float)v[1], (float)v[2]});
-    return set(p, &t, true);
+    struct sr_matrix a = sr_matrix_translate(v);
+    return set(p, &a, true);
 }
 
 sr_status sr_pbrt_read_scale(struct sr_pbrt_parser *p)
@@ -57,8 +57,8 @@ sr_status sr_pbrt_read_scale(struct sr_pbrt_parser *p)
     if (v[0] == 0 || v[1] == 0 || v[2] == 0)
         return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT,
                             "Scale %g %g %g: expected three numbers other than 0", v[0], v[1], v[2]);
-    struct sr_transform t = sr_transform_scale((sr_vec3){(float)v[0], (float)v[1], (float)v[2]});
-    return set(p, &t, true);
+    struct sr_matrix a = sr_matrix_scale(v);
+    return set(p, &a, true);
 }
 
 sr_status sr_pbrt_read_rotate(struct sr_pbrt_parser *p)
@@ -69,8 +69,8 @@ sr_status sr_pbrt_read_rotate(struct sr_pbrt_parser *p)
     if (v[1] == 0 && v[2] == 0 && v[3] == 0)
         return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT,
                             "Rotate about the axis 0 0 0: expected an axis of some length");
-    struct sr_transform t = sr_transform_rotate((float)v[0], (sr_vec3){(float)v[1], (float)v[2], (float)v[3]});
-    return set(p, &t, true);
+    struct sr_matrix a = sr_matrix_rotate(v[0], v + 1);
+    return set(p, &a, true);
 }
 
 sr_status sr_pbrt_read_look_at(struct sr_pbrt_parser *p)
@@ -78,15 +78,12 @@ sr_status sr_pbrt_read_look_at(struct sr_pbrt_parser *p)
     double v[9];
     if (sr_pbrt_read_numbers(p, 9, v) != SR_OK)
         return p->error->status;
-    sr_vec3 eye = {(float)v[0], (float)v[1], (float)v[2]}, look = {(float)v[3], (float)v[4], (float)v[5]};
-    sr_vec3 up = {(float)v[6], (float)v[7], (float)v[8]}, d = sr_sub(look, eye);
-    if (!(sr_length2(d) > 0) || !(sr_length2(up) > 0) ||
-        !(sr_length(sr_cross(sr_normalize(up), sr_normalize(d))) > 1e-6f))
+    struct sr_matrix a;
+    if (!sr_matrix_look_at(v, v + 3, v + 6, &a))
         return sr_pbrt_fail(
             p->d, p->where, p->error, SR_ERROR_INPUT,
             "LookAt: the eye is where it looks, or up points along the view: expected three different directions");
-    struct sr_transform t = sr_transform_look_at(eye, look, up);
-    return set(p, &t, true);
+    return set(p, &a, true);
 }
 
 static sr_status read_matrix(struct sr_pbrt_parser *p, bool is_relative)
@@ -94,12 +91,11 @@ static sr_status read_matrix(struct sr_pbrt_parser *p, bool is_relative)
     double v[16];
     if (sr_pbrt_read_numbers(p, 16, v) != SR_OK)
         return p->error->status;
-    float m[4][4];
+    struct sr_matrix a;
     for (int row = 0; row < 4; ++row)
         for (int column = 0; column < 4; ++column)
-            m[row][column] = (float)v[column * 4 + row];
-    struct sr_transform t = sr_transform_from_matrix((const float(*)[4])m);
-    return set(p, &t, is_relative);
+            a.m[row][column] = v[column * 4 + row];
+    return set(p, &a, is_relative);
 }
 
 sr_status sr_pbrt_read_transform(struct sr_pbrt_parser *p)

@@ -17,20 +17,27 @@ struct writer {
     uint32_t mesh_count;
 };
 
-static bool is_identity(const struct sr_transform *t)
+static bool is_identity(const struct sr_matrix *t)
 {
-    struct sr_transform one = sr_transform_identity();
+    struct sr_matrix one = sr_matrix_identity();
     return memcmp(t->m, one.m, sizeof one.m) == 0;
+}
+
+/* A float's few digits, unless the number is finer than that: places far away. */
+static double print_number(double x)
+{
+    double few = sr_print_few_digits((float)x);
+    return fabs(few - x) <= 1e-7 || fabs(few - x) <= 1e-9 * fabs(x) ? few : x;
 }
 
 static void print_transform(struct writer *w, const char *word, uint32_t index)
 {
-    const struct sr_transform *t = &SR_PBRT_AT(w->d.transforms, struct sr_pbrt_transform, index)->start;
+    const struct sr_matrix *t = &SR_PBRT_AT(w->d.transforms, struct sr_pbrt_transform, index)->start;
     if (is_identity(t))
         return;
     struct sr_pbrt_statement s = {.word = word, .number_count = 16};
     for (int i = 0; i < 16; ++i)
-        s.numbers[i] = sr_print_few_digits(t->m[i % 4][i / 4]); // column by column
+        s.numbers[i] = print_number(t->m[i % 4][i / 4]); // column by column
     sr_pbrt_statement_print(w->out, &s);
 }
 

@@ -108,7 +108,8 @@ static sr_vec3 placed(size_t i, uint32_t vertex) // in the world
     const struct sr_pbrt_param *p = sr_pbrt_find(&shape(i)->entity.params, "P");
     const float *P = p->floats + 3 * (size_t)vertex;
     EXPECT(3 * vertex + 2 < p->count);
-    return sr_transform_point(&SR_PBRT_AT(d.transforms, struct sr_pbrt_transform, shape(i)->entity.transform)->start, (sr_vec3){P[0], P[1], P[2]});
+    struct sr_transform to_world = sr_matrix_to_transform(&SR_PBRT_AT(d.transforms, struct sr_pbrt_transform, shape(i)->entity.transform)->start);
+    return sr_transform_point(&to_world, (sr_vec3){P[0], P[1], P[2]});
 }
 
 static const struct sr_pbrt_param *material_param(const char *material, const char *name)
@@ -441,8 +442,8 @@ TEST(gltf_cameras)
     EXPECT_NEAR(fov, 2 * atan(tan(0.5) / 2) * 180 / 3.14159265358979, 1e-4); // of the shorter side, the width
     EXPECT(sr_pbrt_get_int(&d, &d.film.params, "xresolution", &width, &error) == SR_OK && width == 720);
     EXPECT(sr_pbrt_get_int(&d, &d.film.params, "yresolution", &height, &error) == SR_OK && height == 1440);
-    const struct sr_transform *to_camera = &SR_PBRT_AT(d.transforms, struct sr_pbrt_transform, d.camera.transform)->start;
-    sr_vec3 p = sr_transform_point(to_camera, (sr_vec3){1, 2, 0}); // x right, y up, six metres ahead
+    struct sr_transform to_camera = sr_matrix_to_transform(&SR_PBRT_AT(d.transforms, struct sr_pbrt_transform, d.camera.transform)->start);
+    sr_vec3 p = sr_transform_point(&to_camera, (sr_vec3){1, 2, 0}); // x right, y up, six metres ahead
     EXPECT_NEAR(p.x, 1, 1e-6);
     EXPECT_NEAR(p.y, 2, 1e-6);
     EXPECT_NEAR(p.z, 6, 1e-6);
@@ -468,7 +469,7 @@ TEST(gltf_without_light_and_camera_gets_both)
     describe(TRIANGLE "," SHOWN);
     EXPECT_EQUAL_INT(d.lights.count, 1);
     EXPECT_EQUAL_TEXT(SR_PBRT_AT(d.lights, struct sr_pbrt_light, 0)->entity.model, "infinite");
-    const struct sr_transform *to_camera = &SR_PBRT_AT(d.transforms, struct sr_pbrt_transform, d.camera.transform)->start;
+    struct sr_transform camera = sr_matrix_to_transform(&SR_PBRT_AT(d.transforms, struct sr_pbrt_transform, d.camera.transform)->start), *to_camera = &camera;
     for (uint32_t i = 0; i < 3; ++i) { // all of it in front, inside of 40 degrees
         sr_vec3 p = sr_transform_point(to_camera, placed(0, i));
         EXPECT(p.z > 0 && fabsf(p.y) < p.z * 0.364f && fabsf(p.x) < p.z * 0.364f * 16 / 9);

@@ -159,6 +159,12 @@ TEST(shapes_remember_the_state_where_they_stand)
     forget(&p);
 }
 
+static sr_vec3 through(const struct sr_matrix *a, sr_vec3 p)
+{
+    struct sr_transform t = sr_matrix_to_transform(a);
+    return sr_transform_point(&t, p);
+}
+
 TEST(transforms_compose_from_the_right)
 {
     struct parsed p;
@@ -171,13 +177,13 @@ TEST(transforms_compose_from_the_right)
                      SR_OK);
     const struct sr_pbrt_shape *s = p.d.shapes.data;
     const struct sr_pbrt_transform *t = p.d.transforms.data;
-    sr_vec3 q = sr_transform_point(&t[s[0].entity.transform].start, (sr_vec3){1, 1, 1});
+    sr_vec3 q = through(&t[s[0].entity.transform].start, (sr_vec3){1, 1, 1});
     EXPECT(q.x == 3 && q.y == 2 && q.z == 2);
-    q = sr_transform_point(&t[s[1].entity.transform].start, (sr_vec3){0, 0, 0});
+    q = through(&t[s[1].entity.transform].start, (sr_vec3){0, 0, 0});
     EXPECT(q.x == 7 && q.y == 8 && q.z == 9);
     EXPECT_NEAR(t[s[2].entity.transform].start.m[2][3], -5, 0);
     EXPECT_NEAR(t[s[3].entity.transform].start.m[2][3], 5, 0);
-    q = sr_transform_point(&t[s[4].entity.transform].start, (sr_vec3){1, 0, 0});
+    q = through(&t[s[4].entity.transform].start, (sr_vec3){1, 0, 0});
     EXPECT_NEAR(q.y, 1, 1e-6);
     EXPECT_NEAR(t[s[5].entity.transform].start.m[0][3], 0, 1e-6);
     EXPECT_NEAR(t[s[5].entity.transform].end.m[1][3], 1, 1e-6);
