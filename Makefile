@@ -6,7 +6,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 OUT ?= out
 SECONDS ?= 60
 
-.PHONY: all render test test-asan test-tsan fuzz soak mutants validate bench check format format-reference install clean packages
+.PHONY: all render test test-asan test-tsan fuzz soak soak-rays mutants validate bench check format format-reference install clean packages
 
 all: packages
 	@cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release >$(BUILD).log 2>&1 || { cat $(BUILD).log; exit 1; }
@@ -54,6 +54,10 @@ validate: all
 # wrong versions of the program, each of which a test must catch
 mutants: packages
 	python3 tests/mutants/mutants.py . build-mutants
+
+# 10^9 rays from inside of closed meshes and 10^9 that leave surfaces: an hour of one processor
+soak-rays: all
+	$(BUILD)/sr_soak
 
 bench: all
 	$(BUILD)/sr_bench

@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT */
+/* Rays whose answer is known: from inside of closed meshes, which must meet something, and leaving convex surfaces, which must
+ * not meet them again. Ray number i is the same whoever casts it: parts of a long run may be cast in any order. */
+#ifndef SR_TESTS_TRUTH_RAYS_H
+#define SR_TESTS_TRUTH_RAYS_H
+
+#include "test.h"
+
+#include "scene/scene.h"
+
+/* ---- closed meshes ---- */
+
+enum body { BODY_BALL, BODY_SPIKES, BODY_CUBE, BODIES };
+enum aim { AIM_ANYWHERE, AIM_VERTEX, AIM_EDGE, AIM_AXIS, AIM_AXIS_VERTEX, AIM_PLANE, AIMS };
+extern const char *const body_names[BODIES], *const aim_names[AIMS];
+
+struct closed_mesh {
+    struct sr_scene *scene;
+    double centre, radius; // [m] the centre is (centre, centre, centre)
+    const sr_vec3 *P;
+    const int32_t *indices;
+    uint32_t vertices, triangles;
+};
+/* rings: of the ball, 4 rings^2 triangles. offset: of the centre along each axis, in radii. is_instance: as an instance that is turned. */
+struct closed_mesh make_closed_mesh(enum body body, int rings, double radius, double offset, bool is_instance);
+void free_closed_mesh(struct closed_mesh *m);
+
+struct leaks {
+    uint64_t rays, leaks, shadows; // of the nearest point, and of visibility
+};
+struct leaks cast_from_inside(const struct closed_mesh *m, enum aim aim, uint64_t begin, uint64_t end);
+
+/* ---- surfaces that see nothing of themselves ---- */
+
+enum convex { CONVEX_SPHERE, CONVEX_DISK, CONVEX_CYLINDER, CONVEX_PATCH, CONVEX_TRIANGLES, CONVEX_RIBBON, CONVEX_BALL, CONVEXES };
+extern const char *const convex_names[CONVEXES];
+
+struct convex_surface {
+    struct sr_scene *scene;
+    enum convex kind;
+    double scale;   // [m]
+    sr_vec3 centre; // [m]
+};
+struct convex_surface make_convex(enum convex kind, double scale, bool is_instance);
+void free_convex(struct convex_surface *s);
+
+struct self_hits {
+    uint64_t rays, hits; // that left the surface outward, and met it again
+    uint64_t inward, missed; // that went into a closed body, and met nothing
+};
+struct self_hits leave_convex(const struct convex_surface *s, uint64_t begin, uint64_t end);
+
+#endif
