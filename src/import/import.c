@@ -65,7 +65,7 @@ static bool is_far(struct sr_box box, double origin[3])
 static void tell_far(const char *path, const double o[3], struct sr_box box, struct sr_log *log)
 {
     double distance = fmax(fabs(o[0]), fmax(fabs(o[1]), fabs(o[2]))), size = (double)sr_max_component(sr_box_diagonal(box)), step = distance * 0x1p-23;
-    sr_log(log, step > 1e-5 * size ? SR_WARNING : SR_INFO,
+    sr_log(log, step > 1e-3 * size ? SR_WARNING : SR_INFO,
            "%s: the scene is %.3g m large and stands at (%g, %g, %g) m: it is computed about there. What transforms place keeps its place; coordinates "
            "written out in shapes and meters are known to %.2g m",
            path, size, o[0], o[1], o[2], step);
