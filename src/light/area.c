@@ -265,6 +265,8 @@ static bool draw_point(const struct sr_light_area *m, const struct sr_point *ref
 static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
 {
     const struct sr_light_area *m = self;
+    if (m->kind == SR_LIGHT_FLAT && !m->emission->two_sided && sr_dot(m->flat.n, sr_sub(reference->p, m->flat.corner)) <= 0)
+        return false; // all of it is seen from behind: no point need be drawn to know
     if (is_far(m, reference->p))
         return m->kind == SR_LIGHT_FLAT ? sample_flat(m, reference->p, u, w, s) : sample_round(m, reference->p, u, w, s);
     struct sr_shape_sample x;
