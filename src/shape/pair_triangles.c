@@ -89,6 +89,7 @@ sr_status sr_shape_pair_triangles(struct sr_shape_mesh *m, struct sr_arena *aren
     }
     sr_free(rest);
     m->pairs = pairs;
+    m->normals = NULL; // of another order
     if (turns)
         keep_turns(m, turns, n);
     return SR_OK;

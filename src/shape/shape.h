@@ -94,6 +94,7 @@ struct sr_shape_mesh {
     struct sr_slice face_indices; // int32, one a triangle, or empty
     bool flip_normals;            // derived: outside is on the other side of the winding
     uint32_t left_out;            // derived: triangles with numbers that are not finite
+    const sr_vec3 *normals;       // derived: NULL, or of each triangle, by the winding [1]: small meshes keep them
     uint32_t pairs;               // derived: the first 2 pairs triangles are pairs, as sr_shape_pair_triangles leaves them
     const uint8_t *turns;         // derived: NULL, or of triangle i turns[i & turn_mask]: the place at which its first corner stands
     uint32_t turn_mask;

@@ -30,12 +30,68 @@ static const struct sr_param params[] = {
 };
 #undef T
 
+/* A vertex and the number behind it, to be worked on with one instruction. */
+typedef float quad __attribute__((vector_size(16)));
+typedef int32_t quad_bits __attribute__((vector_size(16)));
+
+static inline quad load(const sr_vec3 *p)
+{
+    quad a;
+    __builtin_memcpy(&a, p, sizeof a);
+    return a;
+}
+
+static inline sr_vec3 three(quad a)
+{
+    return (sr_vec3){a[0], a[1], a[2]};
+}
+
+static inline quad magnitude(quad a)
+{
+    return (quad)((quad_bits)a & INT32_MAX);
+}
+
+/* sr_cross, lane by lane: a b - c d without cancellation. */
+static inline quad cross(quad a, quad b)
+{
+    quad a1 = __builtin_shufflevector(a, a, 1, 2, 0, 3), a2 = __builtin_shufflevector(a, a, 2, 0, 1, 3);
+    quad b1 = __builtin_shufflevector(b, b, 2, 0, 1, 3), b2 = __builtin_shufflevector(b, b, 1, 2, 0, 3);
+    quad c = a2 * b2, difference, error;
+    for (int i = 0; i < 4; ++i)
+        difference[i] = fmaf(a1[i], b1[i], -c[i]);
+    for (int i = 0; i < 4; ++i)
+        error[i] = fmaf(-a2[i], b2[i], c[i]);
+    return difference + error;
+}
+
+/* By the winding; of triangles without area (0,0,1). */
+static inline sr_vec3 winding_normal(quad v0, quad v1, quad v2)
+{
+    return sr_unit_normal(three(cross(v0 - v2, v1 - v2)));
+}
+
+/* What each hit would take a root and a quotient to find. Large meshes have no room for that. */
+enum { MOST_NORMALS = 1024 };
+static void keep_normals(struct sr_shape_mesh *m, struct sr_arena *arena)
+{
+    uint32_t n = m->indices.count / 3;
+    sr_vec3 *normals = n <= MOST_NORMALS ? sr_arena_alloc(arena, n * sizeof *normals) : NULL;
+    const int32_t *c = m->indices.data;
+    const sr_vec3 *P = m->P.data;
+    for (uint32_t i = 0; normals && i < n; ++i, c += 3)
+        normals[i] = winding_normal(load(P + c[0]), load(P + c[1]), load(P + c[2]));
+    m->normals = normals;
+}
+
 static sr_status prepare(void *self, const struct sr_shape_placement *placement, struct sr_arena *arena,
                          struct sr_error *error)
 {
     struct sr_shape_mesh *m = self;
     const struct sr_mesh_arrays a = {"trianglemesh", 3, &m->indices, &m->P, &m->N, &m->S, &m->uv, &m->face_indices, &m->left_out};
-    return sr_mesh_place(&a, placement, &m->flip_normals, arena, error);
+    sr_status status = sr_mesh_place(&a, placement, &m->flip_normals, arena, error);
+    if (status == SR_OK)
+        keep_normals(m, arena);
+    return status;
 }
 
 static uint32_t primitive_count(const void *self)
@@ -187,27 +243,6 @@ static void point(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_p
     }
 }
 
-/* A vertex and the number behind it, to be worked on with one instruction. */
-typedef float quad __attribute__((vector_size(16)));
-typedef int32_t quad_bits __attribute__((vector_size(16)));
-
-static inline quad load(const sr_vec3 *p)
-{
-    quad a;
-    __builtin_memcpy(&a, p, sizeof a);
-    return a;
-}
-
-static inline sr_vec3 three(quad a)
-{
-    return (sr_vec3){a[0], a[1], a[2]};
-}
-
-static inline quad magnitude(quad a)
-{
-    return (quad)((quad_bits)a & INT32_MAX);
-}
-
 static void bare_point(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_point *x)
 {
     const struct sr_shape_mesh *m = self;
@@ -220,7 +255,7 @@ static void bare_point(const void *self, uint32_t primitive, sr_vec2 hit, struct
     quad a = b0 * v0, b = b1 * v1, d = b2 * v2;
     x->p = three(a + b + d);
     x->p_error = three(gamma7 * (magnitude(a) + magnitude(b) + magnitude(d)));
-    sr_vec3 n = sr_unit_normal(sr_cross(three(v0 - v2), three(v1 - v2)));
+    sr_vec3 n = m->normals ? m->normals[primitive] : winding_normal(v0, v1, v2);
     if (m->N.count) {
         sr_vec3 s = blend(m->N.data, c, b0, b1, b2);
         float l2 = sr_dot(s, s);

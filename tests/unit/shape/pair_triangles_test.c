@@ -68,6 +68,8 @@ static void expect_same_surface(int alone, bool has_uv)
                 at = (sr_vec2){1 - at.x, 1 - at.y};
             struct sr_point x, y;
             sr_shape_trianglemesh.point(&paired, primitive, at, &x);
+            sr_shape_trianglemesh.bare_point(&paired, primitive, at, &y);
+            EXPECT(near(x.n, y.n, 1e-6f)); // kept normals do not outlive the order of triangles
             uint32_t old = (uint32_t)x.face - 1000;
             EXPECT(old < n && (quad >= whole || near(x.p, expected, 1e-6f)));
             seen[old] = true;
