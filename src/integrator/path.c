@@ -52,6 +52,12 @@ static __attribute__((noinline)) bool emerge(const struct sr_scene *scene, const
     return sr_bsdf_sample(bsdf, up, u_bsdf[2], (sr_vec2){u_bsdf[0], u_bsdf[1]}, SR_RADIANCE, s);
 }
 
+// for random walks within a vertex, which hash it
+static inline uint32_t seed_of(const struct sr_sampler *sampler, uint32_t group)
+{
+    return sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu;
+}
+
 static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
                           struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
 {
@@ -68,6 +74,7 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
     float spread = has_footprints ? 0.5f * (sr_length(start->dddx) + sr_length(start->dddy)) : 0; // [1]
     struct sr_hit hits[2];      // where the path is now, and where it was scattered last
     struct sr_hit *x = &hits[0], *from = &hits[1];
+    bool is_seen = first || has_footprints; // where the path is, all of it
     int passed = 0;
     if (start->receiver) {
         from->point = *start->receiver;
@@ -79,13 +86,12 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
         uint32_t group = SR_USE_BOUNCE + 2 * (uint32_t)bounce;
         sr_u4 u_light, u_bsdf;
         sr_sample8(sampler, group, &u_light, &u_bsdf);
-        bool is_seen = bounce == 0 && (first || has_footprints);
         if (!(is_seen ? sr_trace(scene, &ray, x, worker) : sr_trace_bare(scene, &ray, x, worker))) {
-            if (first && bounce == 0)
+            if (is_seen && first)
                 *first = (struct sr_hit){.t = INFINITY};
             return L + beta * escaping(scene, &from->point, pdf, &ray, w);
         }
-        if (first && bounce == 0)
+        if (SR_UNLIKELY(is_seen) && first)
             *first = *x;
 
         // Le(x, wo)
@@ -123,11 +129,10 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
         worker->vertices += 1;
         struct sr_bsdf bsdf;
         struct sr_frame frame;
-        uint32_t seed = sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu; // random walks hash it
         if (SR_LIKELY(x->is_plain))
-            sr_material_shade_plain(x->material, x->lambert, &x->point, sr_neg(ray.d), u_bsdf[3], seed, w, &bsdf, &frame);
+            sr_material_shade_plain(x->material, x->lambert, &x->point, sr_neg(ray.d), u_bsdf[3], seed_of(sampler, group), w, &bsdf, &frame);
         else
-            sr_material_shade(x->material, &x->point, sr_neg(ray.d), u_bsdf[3], seed, w, &bsdf, &frame);
+            sr_material_shade(x->material, &x->point, sr_neg(ray.d), u_bsdf[3], seed_of(sampler, group), w, &bsdf, &frame);
         if (!bsdf.model) {
             if (++passed > 1000)
                 return L;
@@ -151,7 +156,7 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
         if (!goes_on)
             return L;
         struct sr_bssrdf body;
-        if (SR_UNLIKELY(has_subsurface) && s.lobe & SR_LOBE_TRANSMISSION && sr_material_bssrdf(x->material, &x->point, sr_neg(ray.d), u_bsdf[3], seed, w, &body) &&
+        if (SR_UNLIKELY(has_subsurface) && s.lobe & SR_LOBE_TRANSMISSION && sr_material_bssrdf(x->material, &x->point, sr_neg(ray.d), u_bsdf[3], seed_of(sampler, group), w, &body) &&
             !emerge(scene, &body, sampler, SR_USE_SUBSURFACE + 3 * (uint32_t)bounce, w, worker, x, &frame, &bsdf, &s, &beta, &L))
             return L;
         beta *= s.f * (sr_abs_cos_theta(s.wi) / s.pdf);
@@ -164,6 +169,7 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
         from = x;
         x = free;
         ++bounce;
+        is_seen = false;
 
         // a path that carries little ends by lot, and those that survive carry its share
         float carried = sr_spectrum_max(beta) * eta_scale;

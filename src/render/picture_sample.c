@@ -39,7 +39,7 @@ static struct sr_response response_of(const struct sr_render_job *job)
     bool is_bare = sensor->bare_ray && !sr_scene_has_footprints(job->scene) && !job->film.is_gbuffer;
     const struct sr_film_settings *f = &job->film;
     struct sr_response r = {.law = sr_lambda_law(job->lambda), .buckets = f->buckets, .lambda_min = f->lambda_min,
-                         .lambda_step = f->buckets ? (f->lambda_max - f->lambda_min) / (float)f->buckets : 0, .imaging_ratio = f->exposure_time * f->iso / 100, .bucket_scale = f->bucket_scale * f->exposure_time * f->iso / 100, .ray = is_bare ? sensor->bare_ray : sensor->ray};
+                         .lambda_step = f->buckets ? (f->lambda_max - f->lambda_min) / (float)f->buckets : 0, .imaging_ratio = f->exposure_time * f->iso / 100, .bucket_scale = f->bucket_scale * f->exposure_time * f->iso / 100, .ray = is_bare ? sensor->bare_ray : sensor->ray, .is_bare = is_bare};
     sr_film_response(&job->film, r.rgb_from_xyz);
     return r;
 }
@@ -129,9 +129,11 @@ bool sr_picture_sample(const struct sr_picture *picture, uint32_t x, uint32_t y,
     // jittered samples smooth a pixel themselves, so that textures need little filtering. pbrt's share at 64 samples and
     // more; the same at any count, or the picture's expectation would depend on it (bump maps: by a factor of 2)
     float share = job->jitter_pixel ? PIXEL_SHARE : 1;
-    struct sr_path_start start = {.ray = view.ray, .dodx = sr_scale(share, view.dodx), .dody = sr_scale(share, view.dody),
-                                  .dddx = sr_scale(share, view.dddx), .dddy = sr_scale(share, view.dddy),
-                                  .medium = sr_scene_sensor_medium(job->scene)};
+    struct sr_path_start start = {.ray = view.ray, .medium = sr_scene_sensor_medium(job->scene)};
+    if (!response->is_bare) {
+        start.dodx = sr_scale(share, view.dodx), start.dody = sr_scale(share, view.dody);
+        start.dddx = sr_scale(share, view.dddx), start.dddy = sr_scale(share, view.dddy);
+    }
     struct sr_hit hit;
     sr_spectrum L = job->integrator.model->L(job->integrator.self, job->scene, &start, sampler, &w, first ? &hit : NULL, worker);
     float v[3], kept;

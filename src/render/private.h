@@ -15,6 +15,7 @@ struct sr_response {
     float lambda_min, lambda_step; // [nm] of a bucket
     float imaging_ratio, bucket_scale; // the latter with the former
     bool (*ray)(const void *sensor, sr_vec2 raster, sr_vec2 u_lens, float u_time, struct sr_sensor_ray *out);
+    bool is_bare; // of the ray: nobody looks at its differentials
 };
 
 /* What all samples of a picture share. */

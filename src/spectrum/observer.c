@@ -8,6 +8,8 @@
  * 1924. */
 #include "spectrum/data.h"
 
+#include <string.h>
+
 typedef float quad __attribute__((vector_size(16)));
 
 void sr_observer_1931(double lambda, double xyz[3])
@@ -55,11 +57,17 @@ struct sr_xyz sr_spectrum_to_xyz(sr_spectrum L, const struct sr_wavelengths *w)
     sr_spectrum weight = sr_spectrum_select(counts, L / w->pdf, SR_BLACK);
     sr_spectrum_int i = __builtin_convertvector(at, sr_spectrum_int);
     sr_spectrum upper = weight * (at - __builtin_convertvector(i, sr_spectrum)), lower = weight - upper;
+    // from memory a number comes to all four places at once, and an offset needs no more arithmetic
+    uint32_t offsets[SR_LAMBDA_COUNT];
+    float lowers[SR_LAMBDA_COUNT], uppers[SR_LAMBDA_COUNT];
+    i *= (sr_lane)sizeof(quad);
+    memcpy(offsets, &i, sizeof offsets);
+    memcpy(lowers, &lower, sizeof lowers);
+    memcpy(uppers, &upper, sizeof uppers);
     quad sums[2] = {{0}}; // two, so that additions wait less for each other
     for (int k = 0; k < SR_LAMBDA_COUNT; ++k) {
-        const quad *row =
-            (const quad *)(const void *)sr_data_observer_f[i[k]]; // the last row is followed by a zero one
-        sums[k & 1] += lower[k] * row[0] + upper[k] * row[1];
+        const quad *row = (const quad *)(const void *)((const char *)sr_data_observer_f + offsets[k]); // the last row is followed by a zero one
+        sums[k & 1] += lowers[k] * row[0] + uppers[k] * row[1];
     }
     quad sum = (sums[0] + sums[1]) * (1.0f / SR_LAMBDA_COUNT);
     return (struct sr_xyz){sum[0], sum[1], sum[2]};
