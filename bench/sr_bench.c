@@ -5,6 +5,7 @@
  *   paths/s of one thread and of all threads, rays/s, the efficiency of all threads, and that of rays alone (what the
  *   machine gives: caches and clocks are shared),
  *   ray-replay efficiency eta = (time of the bare ray caster for the very rays of the render) / (time of the render),
+ *   shares of wasted work: scattering vertices without a shadow ray (mirrors among them), and shadow rays that are blocked,
  *   time to read, to build the acceleration structure, from nothing to a first sample of each pixel; peak memory.
  * Each case runs in a process of its own, so that its peak memory is its own. --bsdf times the scattering models instead. */
 #include "bsdf_bench.h"
@@ -105,6 +106,16 @@ static double time_to_first_pixel(const struct sr_render_job *job, double start_
     return sr_clock_s() - start_s;
 }
 
+/* Shadow rays that meet something, for nothing. Reorders the log. */
+static uint64_t blocked_rays(const struct sr_scene *scene, const struct sr_ray_log *log)
+{
+    struct sr_ray_log shadows = {.rays = log->rays};
+    for (uint64_t i = 0; i < log->count; ++i)
+        if (log->rays[i].is_shadow)
+            shadows.rays[shadows.count++] = log->rays[i];
+    return sr_scene_replay(scene, &shadows);
+}
+
 static int run_case(const struct settings *s, const char *name, const char *path)
 {
     double start_s = sr_clock_s();
@@ -140,12 +151,13 @@ static int run_case(const struct settings *s, const char *name, const char *path
     }
     double spread = 0, t_one = median(one, s->runs), t_all = median(all, s->runs), t_bare = median(bare, s->runs), t_bare_all = median(bare_all, s->runs);
     spread = (one[s->runs - 1] - one[0]) / t_one;
-    double n_rays = (double)(report.rays + report.shadow_rays);
+    double n_rays = (double)(report.rays + report.shadow_rays), n_shadow = (double)report.shadow_rays;
+    double unlit = 1 - n_shadow / (double)report.vertices, blocked = n_shadow > 0 ? (double)blocked_rays(scene.scene, &rays) / n_shadow : 0;
     printf("{\"case\": \"%s\", \"width\": %d, \"height\": %d, \"spp\": %u, \"runs\": %d, \"spread\": %.3f, \"paths_per_s_1\": %.0f, \"paths_per_s\": %.0f, "
-           "\"threads\": %d, \"thread_efficiency\": %.3f, \"bare_thread_efficiency\": %.3f, \"rays_per_s_1\": %.0f, \"rays_per_path\": %.3f, \"shadow_rays_per_path\": %.3f, \"eta\": %.3f, "
+           "\"threads\": %d, \"thread_efficiency\": %.3f, \"bare_thread_efficiency\": %.3f, \"rays_per_s_1\": %.0f, \"rays_per_path\": %.3f, \"shadow_rays_per_path\": %.3f, \"unlit_vertices\": %.3f, \"blocked_shadow_rays\": %.3f, \"eta\": %.3f, "
            "\"bare_ns_per_ray\": %.1f, \"read_s\": %.3f, \"build_s\": %.3f, \"first_pixel_s\": %.3f, \"peak_memory_B\": %llu, \"triangles\": %llu}\n",
            name, scene.film.width, scene.film.height, scene.spp, s->runs, spread, (double)report.paths / t_one, (double)report.paths / t_all, threads,
-           t_one / (t_all * threads), t_bare / t_bare_all, n_rays / t_one, (double)report.rays / (double)report.paths, (double)report.shadow_rays / (double)report.paths,
+           t_one / (t_all * threads), t_bare / t_bare_all, n_rays / t_one, (double)report.rays / (double)report.paths, n_shadow / (double)report.paths, unlit, blocked,
            t_bare / t_one, 1e9 * t_bare / n_rays, scene.read_s, counts.build_s, first_pixel_s, (unsigned long long)peak_B, (unsigned long long)counts.triangles);
     sr_free(rays.rays);
     sr_import_result_free(&scene);
