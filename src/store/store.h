@@ -44,6 +44,8 @@ void sr_store_close(struct sr_store_in *in); // NULL is allowed
 
 /* Whether the file begins as these files do, whatever follows. */
 bool sr_store_is_store(const char *path);
+/* What the file's folder says of its files, on the disk: a rename lasts only then. */
+bool sr_store_sync_folder(const char *path);
 /* Where the previous generation of a file is: FILE~. */
 char *sr_store_previous(struct sr_arena *arena, const char *path);
 

@@ -151,13 +151,13 @@ sr_status sr_store_put(struct sr_store_out *out, const char *name, const void *d
     return status;
 }
 
-/* What the folder says of its files, on the disk. File systems that cannot do that for folders say EINVAL. */
-static bool sync_folder(const struct sr_store_out *out)
+/* File systems that cannot do that for folders say EINVAL. */
+bool sr_store_sync_folder(const char *path)
 {
     char folder[4096];
-    const char *slash = strrchr(out->path, '/');
-    int n = slash ? (int)(slash - out->path) + 1 : 0;
-    if (snprintf(folder, sizeof folder, "%.*s.", n, out->path) >= (int)sizeof folder)
+    const char *slash = strrchr(path, '/');
+    int n = slash ? (int)(slash - path) + 1 : 0;
+    if (snprintf(folder, sizeof folder, "%.*s.", n, path) >= (int)sizeof folder)
         return true;
     int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (fd < 0)
@@ -195,7 +195,7 @@ sr_status sr_store_finish(struct sr_store_out *out, bool keeps_previous, struct 
     if (out->fd < 0) {
         if (close(fd) != 0)
             status = fail_errno(out, "written", error);
-        if (!sync_folder(out))
+        if (!sr_store_sync_folder(out->path))
             status = fail_errno(out, "brought to the disk", error);
     }
     sr_store_abandon(out);

@@ -95,6 +95,14 @@ MUTANTS = [
     Mutant("the picture is scaled by the wrong sensitivity", "film/film.c", "(double)s->iso / 100;", "(double)s->iso / 125;", "analytic cameras*"),
     Mutant("pixels are darker by the cosine to the fourth", "sensor/perspective.c", ".t_max = INFINITY}, .weight = 1};",
            ".t_max = INFINITY}, .weight = sr_sqr(sr_sqr(sr_dot(sr_normalize(d), ((const struct perspective *)self)->n)))};", "analytic cameras*"),
+    # checkpoints
+    Mutant("a checksum does not know where its block belongs", "store/write.c", "crc32(crc32(0, (const Bytef *)place, sizeof place), data, (uInt)size)",
+           "crc32((uLong)(place[0] & 0), data, (uInt)size)", "unit_store blocks_in*"),
+    Mutant("gaps are not looked at", "store/read.c", "if (bytes[i])", "if (bytes[i] && n == 0)", "unit_store every_flipped*"),
+    Mutant("a resumed render takes a block twice", "render/render.c", "> run->pass->blocks_before + block - run->first_block;",
+           "> run->pass->blocks_before + block - run->first_block + 1;", "agree resumed_sums*"),
+    Mutant("a checkpoint is written while light paths are under way", "render/render.c", "while (run->active > 0)\n        pthread_cond_wait",
+           "while (run->active > 1000)\n        pthread_cond_wait", "agree resumed_splats*"),
 ]
 
 

@@ -103,6 +103,8 @@ struct render_keeping {
     struct sr_render_keep keep; // path NULL: none
     struct sr_log log;
     bool is_asked_for;
+    const char *outputs[RENDER_MAX_OUTPUTS];
+    int output_count;
 };
 /* Where and how the job is kept; 0, or the exit code of a failure that has been told. */
 int render_keep_begin(const struct render_arguments *a, const struct sr_import_result *scene, const char *identity, struct sr_render_job *job,

@@ -36,8 +36,21 @@ int render_keep_begin(const struct render_arguments *a, const struct sr_import_r
         fprintf(stderr, "note: %s is there of a render that has not ended; this one begins anew and will replace it (--resume goes on from it)\n", path);
     k->keep = (struct sr_render_keep){.path = path, .identity = identity, .interval_s = a->checkpoint_s, .resumes = a->resume,
                                       .has_no_copy = !render_has_room(job, 2), .log = &k->log};
+    k->output_count = render_output_count(a);
+    for (int i = 0; i < k->output_count; ++i)
+        k->outputs[i] = render_output_name(a, scene, i);
     job->keep = &k->keep;
     return 0;
+}
+
+/* The checkpoint goes only when the pictures are where no power cut takes them from. */
+static void forget(const struct render_keeping *k, const struct sr_render_keep *keep)
+{
+    bool ok = true;
+    for (int i = 0; i < k->output_count; ++i)
+        ok &= sr_store_sync_folder(k->outputs[i]);
+    if (ok)
+        sr_render_forget(keep);
 }
 
 int render_keep_end(struct render_keeping *k, const struct sr_render_job *job, const struct sr_film *film, struct sr_render_part *part, struct sr_render_report *report, bool is_written)
@@ -55,7 +68,7 @@ int render_keep_end(struct render_keeping *k, const struct sr_render_job *job, c
     }
     if (report->is_complete) {
         if (report->kept.written || report->kept.is_resumed)
-            sr_render_forget(keep);
+            forget(k, keep);
         return k->is_asked_for && report->kept.is_behind ? SR_ERROR_RESOURCE : 0;
     }
     if (is_kept)
