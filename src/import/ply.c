@@ -316,7 +316,7 @@ static sr_status read_corners(struct reader *r, const struct sr_ply_property *p,
     l->corners.count = 0;
     if (!read_value(r, p->count_type, &corners))
         return cut_short(r, "face", i, count);
-    if (corners < 0 || corners > (double)(r->end - r->p))
+    if (!(corners >= 0 && corners <= (double)(r->end - r->p)))
         return sr_fail(r->error, SR_ERROR_INPUT,
                        "%s: face %llu says that it has %.0f corners, more than the file holds", r->label,
                        (unsigned long long)i + 1, corners);

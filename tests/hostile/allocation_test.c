@@ -7,37 +7,12 @@
 #include "test.h"
 
 #include "hostile/scenes.h"
-#include "render/render.h"
 
 #include <signal.h>
 #include <stdlib.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-/* From a name to a picture in a file. */
-static sr_status run(const char *path, const char *out, struct sr_error *error)
-{
-    struct sr_import_options options = {.threads = 1, .width = 3, .height = 2, .spp = 4};
-    struct sr_import_result r;
-    sr_status status = sr_import_pbrt(path, &options, &r, NULL, error);
-    if (status != SR_OK)
-        return status;
-    struct sr_render_job job = {.scene = r.scene, .sensor = r.sensor, .filter = r.filter, .integrator = r.integrator, .film = r.film, .sampler = r.sampler,
-                                .seed = r.seed, .spp = 4, .lambda = {360, 830}, .jitter_pixel = true, .jitter_lambda = true, .threads = 1, .with_aov = true};
-    struct sr_film *film = NULL;
-    struct sr_image *image = NULL;
-    struct sr_render_report report;
-    status = sr_render(&job, &film, &report, error);
-    if (status == SR_OK)
-        status = sr_render_image(film, true, false, &image, error);
-    if (status == SR_OK)
-        status = sr_image_write(out, image, NULL, error);
-    sr_image_free(image);
-    sr_film_destroy(film);
-    sr_import_result_free(&r);
-    return status;
-}
 
 /* What a child tells about its runs. */
 struct tally {
@@ -56,10 +31,10 @@ static void try_all(const char *path, uint64_t most, struct tally *t)
     char out[1024];
     struct sr_error error = {0};
     snprintf(out, sizeof out, "%s/out.exr", test_folder());
-    if (run(path, out, &error) != SR_OK) // also fills what is made once
+    if (hostile_render(path, out, &error) != SR_OK) // also fills what is made once
         complain(t, path, "does not render", &error);
     uint64_t live = sr_alloc_live(), before = sr_alloc_count();
-    run(path, out, &error);
+    hostile_render(path, out, &error);
     t->count = sr_alloc_count() - before;
     if (sr_alloc_live() != live)
         complain(t, path, "leaves memory behind where nothing fails", &error);
@@ -69,7 +44,7 @@ static void try_all(const char *path, uint64_t most, struct tally *t)
         t->number = k;
         alarm(60);
         sr_alloc_fail(k, 1);
-        sr_status status = run(path, out, &error);
+        sr_status status = hostile_render(path, out, &error);
         sr_alloc_fail(0, 0);
         ++t->failures;
         t->tolerated += status == SR_OK;

@@ -6,6 +6,7 @@
 #include "fuzz/gltf_seeds.h"
 #include "fuzz/image_seeds.h"
 #include "fuzz/scene_seeds.h"
+#include "render/render.h"
 #include "test.h"
 #include "unit/medium/nanovdb_writer.h"
 
@@ -135,4 +136,27 @@ const char *hostile_estimator(const char *name)
     snprintf(file, sizeof file, "%s.pbrt", name);
     put_scene(file, name);
     return path_of(file);
+}
+
+sr_status hostile_render(const char *name, const char *out, struct sr_error *error)
+{
+    struct sr_import_options options = {.threads = 1, .width = 3, .height = 2, .spp = 4};
+    struct sr_import_result r;
+    sr_status status = sr_import_pbrt(name, &options, &r, NULL, error);
+    if (status != SR_OK)
+        return status;
+    struct sr_render_job job = {.scene = r.scene, .sensor = r.sensor, .filter = r.filter, .integrator = r.integrator, .film = r.film, .sampler = r.sampler,
+                                .seed = r.seed, .spp = 4, .lambda = {360, 830}, .jitter_pixel = true, .jitter_lambda = true, .threads = 1, .with_aov = true};
+    struct sr_film *film = NULL;
+    struct sr_image *image = NULL;
+    struct sr_render_report report;
+    status = sr_render(&job, &film, &report, error);
+    if (status == SR_OK)
+        status = sr_render_image(film, true, false, &image, error);
+    if (status == SR_OK)
+        status = sr_image_write(out, image, NULL, error);
+    sr_image_free(image);
+    sr_film_destroy(film);
+    sr_import_result_free(&r);
+    return status;
 }
