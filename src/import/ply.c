@@ -371,9 +371,8 @@ static sr_status read_faces(struct reader *r, const struct sr_ply_element *e, st
     if (corners < 0 || !e->properties[corners].is_list || e->properties[corners].type >= SR_PLY_FLOAT32)
         return sr_fail(r->error, SR_ERROR_INPUT, "%s: its faces have no list of whole numbers \"vertex_indices\"",
                        r->label);
-    if (e->count > INT32_MAX)
-        return sr_fail(r->error, SR_ERROR_INPUT, "%s: has %llu faces, expected at most 2147483647", r->label,
-                       (unsigned long long)e->count);
+    if (e->count > INT32_MAX / 4) // so that numbers of corners are as small
+        return sr_fail(r->error, SR_ERROR_INPUT, "%s: has %llu faces, expected at most %d", r->label, (unsigned long long)e->count, INT32_MAX / 4);
     if (face_index >= 0 && e->properties[face_index].is_list)
         face_index = -1;
 
