@@ -1,14 +1,23 @@
 # SPDX-License-Identifier: MIT
 # What `make install` puts under its prefix: command, library, public headers, and what pkg-config and CMake need to find them.
 #
-# The command and the tests look into the library, so they always link the static one. BUILD_SHARED_LIBS=ON makes a shared
-# library of the same objects and installs that; only what is marked SR_API can be seen from outside of it.
+# The command and the tests look into the library, so they link the static one. BUILD_SHARED_LIBS=ON makes a shared
+# library of the same objects and installs that; only what is marked SR_API can be seen from outside of it. STERADIAN_ISA=levels
+# installs one for each level of x86-64 (levels.cmake).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set_target_properties(steradian steradian_double PROPERTIES C_VISIBILITY_PRESET hidden)
 set(STERADIAN_INSTALLED steradian)
-if(BUILD_SHARED_LIBS)
+if(STERADIAN_LEVELS)
+  set(BUILD_SHARED_LIBS ON) # as the package's users see it
+  set(STERADIAN_INSTALLED steradian_${STERADIAN_BASE_LEVEL} steradian_tables)
+  foreach(level ${STERADIAN_LEVELS})
+    if(NOT level STREQUAL STERADIAN_BASE_LEVEL)
+      install(TARGETS steradian_${level} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/glibc-hwcaps/${level} NAMELINK_SKIP)
+    endif()
+  endforeach()
+elseif(BUILD_SHARED_LIBS)
   add_library(steradian_shared SHARED $<TARGET_OBJECTS:steradian> $<TARGET_OBJECTS:steradian_double>)
   set_target_properties(steradian_shared PROPERTIES OUTPUT_NAME steradian EXPORT_NAME steradian LINKER_LANGUAGE C
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
