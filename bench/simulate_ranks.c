@@ -29,12 +29,13 @@ static const char help[] =
     "      --bandwidth B      [B/s] (default: 1e10)\n"
     "      --take S           [s] that rank 0 needs for a byte (default: that of the log)\n"
     "      --serve S          [s] that rank 0 needs for a message (default: 3e-6)\n"
+    "      --unit-bytes B     of a finished unit (default: as in the log)\n"
     "      --nap S            [s] between looks for messages (default: 1e-3)\n"
     "      --load S           [s] that every rank loads before; the efficiency counts it (default: 0)\n"
     "      --tsv              the table with tabulators\n";
 
 struct model {
-    double latency_s, bytes_per_s, take_s, serve_s, nap_s, load_s, samples;
+    double latency_s, bytes_per_s, take_s, serve_s, nap_s, load_s, samples, unit_B;
     uint32_t threads, pixels;
 };
 
@@ -295,7 +296,7 @@ int main(int argc, char **argv)
         const char *name;
         double *value;
     } numbers[] = {{"--latency", &m.latency_s}, {"--bandwidth", &m.bytes_per_s}, {"--take", &m.take_s}, {"--serve", &m.serve_s},
-                   {"--nap", &m.nap_s}, {"--load", &m.load_s}, {"--samples", &m.samples}};
+                   {"--nap", &m.nap_s}, {"--load", &m.load_s}, {"--samples", &m.samples}, {"--unit-bytes", &m.unit_B}};
     for (int i = 1; i < argc; ++i) {
         const char *value = i + 1 < argc ? argv[i + 1] : "0";
         bool is_known = false;
@@ -330,6 +331,7 @@ int main(int argc, char **argv)
         fprintf(stderr, "simulate-ranks: %s: no units of a log are in it\n", path);
         return SR_ERROR_INPUT;
     }
+    log.unit_B = m.unit_B > 0 ? m.unit_B : log.unit_B;
     m.take_s = m.take_s < 0 ? log.take_s : m.take_s;
     printf(is_tsv ? "ranks\tcores\ttime_s\tefficiency\tmessages\tbytes\trank0\n" : "%8s %8s %14s %12s %12s %13s %11s\n", "ranks", "cores", "time", "efficiency", "messages",
            "bytes", "rank 0");
