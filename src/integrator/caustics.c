@@ -190,4 +190,5 @@ const struct sr_integrator_model sr_integrator_caustics = {
     .knows_receivers = true,
     .begin = begin,
     .end = end,
+    .by_turns = true,
 };

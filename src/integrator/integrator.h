@@ -8,6 +8,8 @@
 #include "scene/scene.h"
 #include "sensor/sensor.h"
 
+#include <stdatomic.h>
+
 /* What paths from the lights are told to: a sensor with its film, or a meter. It gains
  *
  *     beta f(w, wi) |cos theta| weight          w toward the target, cos theta of w at the vertex
@@ -36,14 +38,22 @@ struct sr_worker {
 
 /* What an integrator may know of the picture before its first sample. */
 struct sr_picture_plan {
-    uint64_t pixels;
-    uint32_t per_replicate; // samples of each replicate; 0: one net, whose samples are taken for all pixels in turn
+    uint32_t x0, y0, width, height; // [pixel] the part that is rendered
+    uint32_t spp;           // samples per pixel in all
+    uint32_t per_replicate; // samples of each replicate; 0: one net of spp samples
     uint32_t seed;
     enum sr_sampler_kind sampler;
     struct sr_lambda_law law;
     bool jitter_lambda;
     int threads;
+    /* One sample of the picture with numbers of the integrator's choice, which is thrown away: L learns from it what it wants. */
+    void (*try)(const void *picture, uint32_t x, uint32_t y, const struct sr_sampler *sampler, struct sr_worker *worker);
+    const void *picture;
+    const atomic_bool *cancel; // NULL, or set by somebody who wants to stop
+    struct sr_worker *counted; // what begin has traced is added to its counters
+    char *remark;              // of SR_PICTURE_REMARK bytes: one sentence about what has been shared, or empty
 };
+enum { SR_PICTURE_REMARK = 200 };
 
 /* A sample's numbers come in groups of four: the sensor's two (one pair, drawn together), then two for each bounce. */
 enum { SR_USE_FILM = 0, SR_USE_LENS = 1, SR_USE_BOUNCE = 2 };
@@ -95,6 +105,7 @@ struct sr_integrator_model {
      * NULL: at meters. NULL hooks: nothing. */
     sr_status (*begin)(const void *self, const struct sr_scene *scene, const struct sr_picture_plan *plan, void **shared, struct sr_error *error);
     void (*end)(void *shared);
+    bool by_turns; // where samples of a number share something, all pixels take them one after the other
     /* Once the parameters are known: checks them, computes what follows from them. NULL: nothing to do. */
     sr_status (*prepare)(void *self, struct sr_arena *arena, struct sr_error *error);
     /* One sentence: which light of this scene the estimator cannot find, so that it is missing from the result. NULL, or

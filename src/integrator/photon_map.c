@@ -53,7 +53,7 @@ struct sr_photon_maps *sr_photon_maps_create(const struct sr_scene *scene, const
     m->plan = *plan;
     m->picture = *picture;
     if (m->plan.paths == 0)
-        m->plan.paths = picture->pixels;
+        m->plan.paths = (uint64_t)picture->width * picture->height;
     if (!(m->plan.radius > 0))
         m->plan.radius = 0.004f * sr_length(sr_box_diagonal(sr_scene_bounds(scene)));
     m->chunk_count = (m->plan.paths + CHUNK - 1) / CHUNK;

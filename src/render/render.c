@@ -431,6 +431,12 @@ static uint32_t block_of(uint32_t spp, uint32_t blocks, uint32_t sample)
     return b;
 }
 
+static void try_sample(const void *picture, uint32_t x, uint32_t y, const struct sr_sampler *sampler, struct sr_worker *worker)
+{
+    float rgb[3];
+    sr_picture_sample(picture, x, y, sampler, rgb, NULL, NULL, worker);
+}
+
 sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render_pass *pass, struct sr_render_report *report, struct sr_error *error)
 {
     struct run run = {.job = job, .pass = pass, .film = pass->film, .base = *report, .tile = job->tile > 0 ? (uint32_t)job->tile : DEFAULT_TILE, .blocks = pass->blocks, .end_block = pass->blocks};
@@ -473,12 +479,18 @@ sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render
         memcpy(run.first_dropped, (uint32_t[4]){report->dropped_x, report->dropped_y, report->dropped_replicate, report->dropped_sample}, sizeof run.first_dropped);
     }
     const struct sr_integrator *integrator = &job->integrator;
-    struct sr_picture_plan plan = {.pixels = (uint64_t)pass->film->width * pass->film->height, .per_replicate = pass->per_replicate, .seed = job->seed,
-                                   .sampler = job->sampler, .law = run.picture.response.law, .jitter_lambda = job->jitter_lambda, .threads = threads};
+    struct sr_worker counted = {0};
+    struct sr_picture_plan plan = {.x0 = (uint32_t)job->film.x0, .y0 = (uint32_t)job->film.y0, .width = pass->film->width, .height = pass->film->height,
+                                   .spp = job->spp, .per_replicate = pass->per_replicate, .seed = job->seed, .sampler = job->sampler,
+                                   .law = run.picture.response.law, .jitter_lambda = job->jitter_lambda, .threads = threads,
+                                   .try = try_sample, .picture = &run.picture, .cancel = job->cancel, .counted = &counted, .remark = run.base.remark};
     if (integrator->model->begin && integrator->model->begin(integrator->self, job->scene, &plan, &run.shared, error) != SR_OK) {
         sr_arena_free(&arena);
         return error->status;
     }
+    run.rays = counted.rays;
+    run.shadow_rays = counted.shadow_rays;
+    run.vertices = counted.vertices;
     pthread_rwlock_init(&run.film_lock, NULL);
     pthread_mutex_init(&run.progress_lock, NULL);
     pthread_mutex_init(&run.gate_lock, NULL);
@@ -522,7 +534,7 @@ static sr_status check(const struct sr_render_job *job, struct sr_error *error)
         return sr_fail(error, SR_ERROR_USAGE, "the estimator %s brings light to the picture as colours, which a film of spectra cannot take; use path or bdpt",
                        job->integrator.model->name);
     if (job->adaptive.is_on && (has_splats(job) || job->integrator.model->begin))
-        return sr_fail(error, SR_ERROR_USAGE, "the estimator %s brings light to the whole picture at a time, and cannot spend samples on some pixels alone",
+        return sr_fail(error, SR_ERROR_USAGE, "the estimator %s works on the whole picture at a time, and cannot spend samples on some pixels alone",
                        job->integrator.model->name);
     if (!job->adaptive.is_on && (job->replicates == 1 || (job->replicates && job->spp % job->replicates != 0)))
         return sr_fail(error, SR_ERROR_USAGE, "%u samples per pixel cannot be split into %u replicates of equal size (2 or more)", job->spp, job->replicates);
@@ -532,7 +544,7 @@ static sr_status check(const struct sr_render_job *job, struct sr_error *error)
 static struct sr_render_pass pass_of(const struct sr_render_job *job)
 {
     // where samples of a number share something over the whole picture, all pixels take them one after the other
-    uint32_t blocks = job->spp < ORDINARY_BLOCKS || job->integrator.model->begin ? job->spp : ORDINARY_BLOCKS;
+    uint32_t blocks = job->spp < ORDINARY_BLOCKS || job->integrator.model->by_turns ? job->spp : ORDINARY_BLOCKS;
     return (struct sr_render_pass){.share_end = 1, .blocks = job->replicates ? job->replicates : blocks,
                                    .per_replicate = job->replicates ? job->spp / job->replicates : 0};
 }

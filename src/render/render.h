@@ -130,6 +130,7 @@ struct sr_render_report {
     uint64_t dropped;                        // samples that were not finite
     uint32_t dropped_x, dropped_y, dropped_sample, dropped_replicate; // the first of them, for replay
     bool is_complete;
+    char remark[SR_PICTURE_REMARK];          // what the estimator has to say of this picture, or empty
     struct sr_render_kept {
         uint32_t written, failed; // checkpoints
         bool is_behind;           // the last one that was tried is not on disk

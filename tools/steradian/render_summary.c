@@ -67,6 +67,8 @@ void render_print_summary(const struct rendering *r, const struct sr_film *film,
             film->height, picture_mean_spp(film), r->job->adaptive.is_on ? " on average" : "", r->scene->units == SR_UNITS_SI ? "SI" : "photometric",
             report->render_s, 1e-6 * rate((double)report->paths, report->render_s),
             1e-6 * rate((double)(report->rays + report->shadow_rays), report->render_s));
+    if (report->remark[0])
+        fprintf(stderr, "%s\n", report->remark);
     if (r->job->adaptive.is_on)
         fprintf(stderr, "relative error of the picture %.3g %%", 100 * relative_error(r, film));
     if (r->job->adaptive.is_on && r->job->adaptive.error > 0)

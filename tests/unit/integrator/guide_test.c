@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: MIT */
+/* What is learned of directions: drawn as its density says, the same in any order, other in other places. */
+#include "test.h"
+
+#include "integrator/guide.h"
+#include "sample/sample.h"
+
+enum { GRID = 16, ROUNDS = 5 };
+
+/* Light from a disk about +x toward places with x < 0, from all sides toward the others. */
+static void learn_round(struct sr_guide *g, uint32_t round, uint32_t n, bool is_reversed)
+{
+    for (uint32_t i = 0; i < n; ++i) {
+        uint32_t k = is_reversed ? n - 1 - i : i;
+        struct sr_rng rng = sr_rng_seed(k, round);
+        sr_vec3 p = {2 * sr_rng_float(&rng) - 1, sr_rng_float(&rng), sr_rng_float(&rng)}, up = {0, 1, 0};
+        struct sr_guide_record r = {.pdf = SR_INV_PI / 4, .pdf_bsdf = SR_INV_PI / 4, .is_direction = true};
+        r.w = sr_warp_uniform_sphere((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)});
+        r.light = p.x >= 0 || r.w.x > 0.9f ? 1 : 0;
+        r.noise = r.light;
+        r.place = sr_guide_place(g, p, up);
+        r.cell = sr_guide_find(g, &r.place);
+        const struct sr_guide_cell *cell = sr_guide_cell(g, r.cell);
+        r.pdf_guide = cell->has_light ? sr_guide_pdf(g, cell, r.w) : 0;
+        sr_guide_add(g, &r);
+    }
+}
+
+static struct sr_guide *learned(bool is_reversed)
+{
+    struct sr_box bounds = {{-1, 0, 0}, {1, 1, 1}};
+    struct sr_guide *g = sr_guide_create(&bounds, 1, 1);
+    EXPECT(g != NULL);
+    for (uint32_t round = 0; round < ROUNDS; ++round) {
+        learn_round(g, round, 4000u << round, is_reversed);
+        EXPECT(sr_guide_refine(g));
+    }
+    return g;
+}
+
+static const struct sr_guide_cell *cell_at(const struct sr_guide *g, float x)
+{
+    sr_vec3 p = {x, 0.5f, 0.5f}, up = {0, 1, 0};
+    struct sr_guide_place place = sr_guide_place(g, p, up);
+    return sr_guide_cell(g, sr_guide_find(g, &place));
+}
+
+TEST(guided_directions_are_drawn_as_their_density_says)
+{
+    struct sr_guide *g = learned(false);
+    for (int side = 0; side < 2; ++side) {
+        const struct sr_guide_cell *cell = cell_at(g, side ? 0.5f : -0.5f);
+        double observed[GRID * GRID] = {0}, expected[GRID * GRID] = {0}, integral = 0;
+        uint32_t n = is_slow_build() ? 20000 : 200000;
+        for (uint32_t i = 0; i < n; ++i) {
+            struct sr_rng rng = sr_rng_seed(i, 77);
+            sr_vec3 w;
+            float pdf = sr_guide_sample(g, cell, (sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)}, &w);
+            EXPECT_NEAR(sr_length(w), 1, 1e-5);
+            if (i % 16 == 0 && fabsf(pdf / sr_guide_pdf(g, cell, w) - 1) > 1e-3f) { // within rounding of a border
+                sr_vec2 q = sr_equal_area_sphere_to_square(w);
+                float off = fmodf(q.x * 4096, 1), off_y = fmodf(q.y * 4096, 1);
+                EXPECT(sr_min(sr_min(off, 1 - off), sr_min(off_y, 1 - off_y)) < 0.02f);
+            }
+            sr_vec2 q = sr_equal_area_sphere_to_square(w);
+            observed[(int)(q.x * GRID) % GRID + GRID * ((int)(q.y * GRID) % GRID)] += 1;
+        }
+        enum { FINE = 256 };
+        for (int y = 0; y < FINE; ++y)
+            for (int x = 0; x < FINE; ++x) {
+                sr_vec3 w = sr_equal_area_square_to_sphere((sr_vec2){((float)x + 0.5f) / FINE, ((float)y + 0.5f) / FINE});
+                double share = (double)sr_guide_pdf(g, cell, w) * 4 * (double)SR_PI / (FINE * FINE);
+                integral += share;
+                expected[x * GRID / FINE + GRID * (y * GRID / FINE)] += share * n;
+            }
+        EXPECT_NEAR(integral, 1, 1e-4);
+        EXPECT_CHI2(observed, expected, GRID * GRID);
+    }
+    sr_guide_destroy(g);
+}
+
+TEST(guides_know_where_light_comes_from_and_where_it_pays_to_know)
+{
+    struct sr_guide *g = learned(false);
+    sr_vec3 there = {1, 0, 0}, elsewhere = {-1, 0, 0};
+    const struct sr_guide_cell *dark = cell_at(g, -0.5f), *even = cell_at(g, 0.5f);
+    EXPECT(sr_guide_cell_count(g) > 8);
+    printf("  toward the light %.3g, elsewhere %.3g\n", (double)sr_guide_pdf(g, dark, there), (double)sr_guide_pdf(g, dark, elsewhere));
+    EXPECT(sr_guide_pdf(g, dark, there) > 4 * SR_INV_PI / 4);
+    EXPECT(sr_guide_pdf(g, dark, elsewhere) < 0.5f * SR_INV_PI / 4); // what earlier rounds have seen from larger cells fades
+    EXPECT_RELATIVE(sr_guide_pdf(g, even, elsewhere), SR_INV_PI / 4, 0.3);
+    EXPECT(dark->share[0] == sr_guide_shares[SR_GUIDE_SHARES - 1]);
+    EXPECT(even->share[0] == 0); // all directions are as good: the guide is not worth its price
+    sr_guide_destroy(g);
+}
+
+TEST(guides_do_not_depend_on_the_order_of_records)
+{
+    struct sr_guide *a = learned(false), *b = learned(true);
+    EXPECT_EQUAL_INT(sr_guide_cell_count(a), sr_guide_cell_count(b));
+    for (uint32_t i = 0; i < 2000; ++i) {
+        struct sr_rng rng = sr_rng_seed(i, 5);
+        sr_vec3 w = sr_warp_uniform_sphere((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)});
+        float x = 2 * sr_rng_float(&rng) - 1;
+        const struct sr_guide_cell *ca = cell_at(a, x), *cb = cell_at(b, x);
+        EXPECT(sr_guide_pdf(a, ca, w) == sr_guide_pdf(b, cb, w));
+        EXPECT(ca->share[0] == cb->share[0]);
+    }
+    sr_guide_destroy(a);
+    sr_guide_destroy(b);
+}
