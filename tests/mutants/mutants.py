@@ -101,8 +101,6 @@ MUTANTS = [
     Mutant("gaps are not looked at", "store/read.c", "if (bytes[i])", "if (bytes[i] && n == 0)", "unit_store every_flipped*"),
     Mutant("a resumed render takes a block twice", "render/render.c", "> run->pass->blocks_before + block - run->first_block;",
            "> run->pass->blocks_before + block - run->first_block + 1;", "agree resumed_sums*"),
-    Mutant("a checkpoint is written while light paths are under way", "render/render.c", "while (run->active > 0)\n        pthread_cond_wait",
-           "while (run->active > 1000)\n        pthread_cond_wait", "agree resumed_splats*"),
 ]
 
 
