@@ -61,7 +61,9 @@ static bool open_json(struct sr_gltf *g, struct sr_gltf_buffer text)
         return false;
     g->root = json_loadb((const char *)text.data, text.size, 0, &error);
     if (!g->root) {
-        if (error.line > 0)
+        if (json_error_code(&error) == json_error_out_of_memory)
+            sr_fail(g->c.error, SR_ERROR_RESOURCE, "%s: not enough memory for its JSON", g->c.path);
+        else if (error.line > 0)
             sr_fail(g->c.error, SR_ERROR_INPUT, "%s:%d:%d: %s", g->c.path, error.line, error.column, error.text);
         else
             sr_gltf_fail(g, NULL, "%s", error.text);
