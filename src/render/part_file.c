@@ -143,6 +143,14 @@ static char *get_text(const struct sr_store_in *in, const char *name, struct sr_
     return text;
 }
 
+static bool is_camera(uint32_t camera1)
+{
+    for (uint32_t i = 0; i < camera1; ++i)
+        if (!sr_film_camera_name((int)i))
+            return false;
+    return true;
+}
+
 /* Whether all numbers of a head are within what a job can have. */
 static bool is_sound(const struct head *h)
 {
@@ -150,7 +158,7 @@ static bool is_sound(const struct head *h)
     bool has_blocks = h->blocks >= 1 && h->blocks <= h->spp && h->spp <= 1u << 30;
     bool has_replicates = h->replicates == 0 || (h->replicates == h->blocks && h->spp % h->replicates == 0);
     return w > 0 && height > 0 && w <= 1 << 20 && height <= 1 << 20 && h->space >= 0 && h->space < SR_COLOUR_SPACE_COUNT && h->buckets <= MOST_BUCKETS &&
-           h->is_gbuffer <= 1 && h->has_aov <= 1 && has_blocks && has_replicates && (h->groups == 0 || (h->groups >= 2 && h->groups <= SR_SPLAT_GROUPS));
+           h->is_gbuffer <= 1 && h->has_aov <= 1 && is_camera(h->camera1) && has_blocks && has_replicates && (h->groups == 0 || (h->groups >= 2 && h->groups <= SR_SPLAT_GROUPS));
 }
 
 static void get_splats(const struct sr_store_in *in, struct sr_film *film, uint32_t groups, struct sr_error *error)
