@@ -120,9 +120,10 @@ def lost_rank(p, is_slow):
             job.terminate()
         code = job.wait(timeout=60)
         took = time.monotonic() - start
-        if code == 0:
+        picture = p.folder / "lost.exr"
+        if code == 0 or (picture.exists() and not keep.exists() and hash_of(picture) == whole): # mpirun was told too late
             print(f"{how}: the render was faster")
-            (p.folder / "lost.exr").touch()
+            picture.touch()
             continue
         expect(is_slow or took < 5, f"{how}: the job took {took:.1f} s to end")
         expect(keep.exists(), f"{how}: left no checkpoint")
