@@ -52,12 +52,12 @@ static void expect_same_sums(struct sr_render_job job)
     EXPECT(identity);
     char path[600];
     snprintf(path, sizeof path, "%s", beside(""));
+    struct sr_render_keep keep = {.path = path, .identity = identity, .interval_s = 0.002, .resumes = true};
+    job.keep = &keep;
     int stops = 0;
     for (sr_status status = SR_CANCELLED; status == SR_CANCELLED; ++stops) {
         struct sr_error error = {0};
         struct stopper stopper = {.left = 5 + 3 * stops};
-        struct sr_render_keep keep = {.path = path, .identity = identity, .interval_s = 0.002, .resumes = true};
-        job.keep = &keep;
         job.threads = threads[stops % 4];
         job.tile = tiles[stops / 4 % 4];
         job.progress = on_progress;
@@ -74,7 +74,7 @@ static void expect_same_sums(struct sr_render_job job)
     EXPECT(are_equal(film, expected));
     EXPECT(report.paths == alone.paths && report.rays == alone.rays && report.shadow_rays == alone.shadow_rays && report.vertices == alone.vertices &&
            report.dropped == alone.dropped);
-    sr_render_forget(job.keep);
+    sr_render_forget(&keep);
     EXPECT(!sr_file_exists(beside("")) && !sr_file_exists(beside("~")) && !sr_file_exists(beside(".new")));
     sr_film_destroy(film);
     sr_film_destroy(expected);
