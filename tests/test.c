@@ -3,7 +3,6 @@
 #include "test.h"
 
 #include <setjmp.h>
-#include <stdarg.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -44,9 +43,7 @@ void test_fail(const char *file, int line, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    fprintf(stderr, "%s:%d: ", file, line);
-    vfprintf(stderr, format, arguments);
-    fputc('\n', stderr);
+    test_print_failure(file, line, format, arguments);
     va_end(arguments);
     _fail(file, line);
     abort();
@@ -104,6 +101,18 @@ const char *test_reference_file(const char *name)
         test_skip("set STERADIAN_REFERENCE_DIR to the folder of reference scenes");
     }
     return path;
+}
+
+size_t test_address_space_B(void)
+{
+    unsigned long pages = 0;
+    FILE *f = fopen("/proc/self/statm", "r");
+    if (f) {
+        if (fscanf(f, "%lu", &pages) != 1)
+            pages = 0;
+        fclose(f);
+    }
+    return (size_t)pages * (size_t)sysconf(_SC_PAGESIZE);
 }
 
 const char *test_folder(void)

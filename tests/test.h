@@ -12,12 +12,20 @@
 
 #include "math/math.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 void test_register(const char *file, const char *name, void (*run)(void));
 void test_fail(const char *file, int line, const char *format, ...) __attribute__((format(printf, 3, 4), noreturn));
+/* Its message alone, for programs that fail in another way. */
+static inline void test_print_failure(const char *file, int line, const char *format, va_list arguments)
+{
+    fprintf(stderr, "%s:%d: ", file, line);
+    vfprintf(stderr, format, arguments);
+    fputc('\n', stderr);
+}
 void test_skip(const char *why) __attribute__((noreturn));
 
 #define TEST(name)                                                                                                     \
@@ -55,6 +63,8 @@ void test_chi2(const char *file, int line, const double *observed, const double 
 bool is_slow_build(void);
 /* A file of the optional reference folder; skips the test with a message where it is absent. Static buffer. */
 const char *test_reference_file(const char *name);
+/* What this process has of its address space, for limits upon that. */
+size_t test_address_space_B(void);
 /* A fresh temporary folder for this test program. */
 const char *test_folder(void);
 

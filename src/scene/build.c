@@ -278,8 +278,27 @@ static void pair_triangles(struct sr_scene *scene, struct object *object)
     }
 }
 
+/* Whether the ray caster cannot tell one from the other: meshes only, no filters, which know their shapes. */
+static bool is_alike(const struct object *a, const struct object *b)
+{
+    bool is = a->shape_count == b->shape_count;
+    for (uint32_t i = 0; i < a->shape_count && is; ++i) {
+        const struct placed_shape *s = &a->shapes[i], *t = &b->shapes[i];
+        is = s->shape.self == t->shape.self && s->is_mesh && !s->alpha.model && !t->alpha.model && s->material && t->material;
+    }
+    return is;
+}
+
 static void build_object(struct sr_scene *scene, struct object *object)
 {
+    const struct object *like = object->like ? ((struct object **)scene->objects.data)[object->like] : NULL;
+    if (like && is_alike(object, like)) {
+        for (uint32_t i = 0; i < object->shape_count; ++i)
+            object->shapes[i].is_paired = like->shapes[i].is_paired;
+        object->embree = like->embree;
+        rtcRetainScene(object->embree);
+        return;
+    }
     pair_triangles(scene, object);
     object->embree = rtcNewScene(scene->device);
     rtcSetSceneFlags(object->embree, RTC_SCENE_FLAG_ROBUST);
@@ -361,7 +380,8 @@ void scene_build_embree(struct sr_scene *scene, int threads)
     rtcSetDeviceErrorFunction(scene->device, embree_error, scene);
     rtcSetDeviceMemoryMonitorFunction(scene->device, count_memory, scene);
     struct object **objects = scene->objects.data;
-    for (size_t i = scene->objects.count; i-- > 0;) { // objects before the world that holds them
+    for (size_t k = 1; k <= scene->objects.count; ++k) { // objects before the world that holds them, and before those that are like them
+        size_t i = k % scene->objects.count;
         build_object(scene, objects[i]);
         if (i == 0)
             add_instances(scene, objects[0]);

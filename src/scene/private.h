@@ -32,6 +32,7 @@ struct object {
     uint32_t shape_count;
     RTCScene embree;
     uint32_t number;               // index in the scene's objects
+    uint32_t like;                 // index of the object whose shapes it has; 0: they are its own
 };
 
 struct instance {

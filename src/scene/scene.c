@@ -63,6 +63,14 @@ sr_object_id sr_scene_add_object(struct sr_scene *scene)
     return (sr_object_id){(uint32_t)scene->objects.count - 1}; // the world is the first, its handle "none"
 }
 
+sr_object_id sr_scene_add_object_like(struct sr_scene *scene, sr_object_id earlier)
+{
+    sr_object_id id = sr_scene_add_object(scene);
+    if (scene->error.status == SR_OK)
+        ((struct object **)scene->objects.data)[id.index1]->like = earlier.index1;
+    return id;
+}
+
 void sr_scene_add_shape(struct sr_scene *scene, const struct sr_shape_def *def)
 {
     if (scene->error.status != SR_OK)
@@ -219,8 +227,10 @@ static void place_shapes(struct sr_scene *scene, struct object *object, bool is_
         uint32_t per_light = 1, first_light = has_light ? add_area_lights(scene, def, is_invisible, &per_light) : SR_NO_LIGHT;
         uint32_t n = def->shape.model->primitive_count(def->shape.self);
         bool is_mesh = def->shape.model == &sr_shape_trianglemesh;
-        count_primitives(&scene->counts, def->shape, n);
-        scene_count_degenerate(scene, def);
+        if (!object->like) {
+            count_primitives(&scene->counts, def->shape, n);
+            scene_count_degenerate(scene, def);
+        }
         // a surface that neither scatters nor glows nor parts media is not there; nor is one without coverage
         if (n == 0 || is_invisible || (material_number == 0 && !has_light && !def->media))
             continue;

@@ -39,6 +39,9 @@ struct sr_arena *sr_scene_arena(struct sr_scene *scene);
 struct sr_error *sr_scene_error(struct sr_scene *scene); // where mistakes stick
 void sr_scene_add_shape(struct sr_scene *scene, const struct sr_shape_def *def);
 sr_object_id sr_scene_add_object(struct sr_scene *scene);
+/* An object whose shapes are the very ones of an earlier object, in other materials: where nothing but the material differs, both
+ * have one acceleration structure, and the shapes are counted once. */
+sr_object_id sr_scene_add_object_like(struct sr_scene *scene, sr_object_id earlier);
 void sr_scene_add_instance(struct sr_scene *scene, sr_object_id object, const struct sr_transform *object_to_world);
 void sr_scene_add_moving_instance(struct sr_scene *scene, sr_object_id object, const struct sr_motion *motion); // of object to world
 void sr_scene_add_light(struct sr_scene *scene, struct sr_light light);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Files cut anywhere, with words swapped, with sizes blown up: each is read, or refused with a reason; nothing crashes, nothing
- * takes more than 16 times the file's size and 64 MiB (or, where it can be read, a quarter more than the whole one), nothing takes long.
+ * takes more than 16 times the file's size and 64 MiB, nothing takes long.
  *
  * Each file is damaged in a process of its own, in a folder whose other entries lead to those of the file's own folder, so that
  * meshes and images are found. Reading is held by a limit of the address space; building (some of the damaged files) by the
@@ -146,18 +146,6 @@ static struct bytes damage(const struct bytes *whole, int variant)
 
 /* ---- judging ---- */
 
-static size_t address_space_B(void)
-{
-    unsigned long pages = 0;
-    FILE *f = fopen("/proc/self/statm", "r");
-    if (f) {
-        if (fscanf(f, "%lu", &pages) != 1)
-            pages = 0;
-        fclose(f);
-    }
-    return (size_t)pages * (size_t)sysconf(_SC_PAGESIZE);
-}
-
 static void limit(size_t bytes)
 {
     struct rlimit r = {bytes, RLIM_INFINITY};
@@ -182,8 +170,8 @@ static const char *read_one(const char *path, size_t size, bool builds)
     struct sr_error error = {0};
     struct sr_arena data = {0};
     struct sr_pbrt_description d = {0};
-    if (!builds && address_space_B())
-        limit(address_space_B() + 16 * size + free_B);
+    if (!builds && test_address_space_B())
+        limit(test_address_space_B() + 16 * size + free_B);
     sr_status status = sr_describe(path, &nothing, &data, NULL, &d, &error);
     sr_pbrt_description_free(&d);
     sr_arena_free(&data);
@@ -210,17 +198,6 @@ static int add_size(const char *path, const struct stat *status, int type, struc
     return 0;
 }
 
-/* What the file takes as it is, in a process of its own: a mesh that many nodes of a glTF file show is many times as large there. */
-static size_t honest_peak_B(const char *path)
-{
-    struct rusage usage = {0};
-    pid_t pid = fork();
-    if (pid == 0)
-        _exit(read_one(path, 0, true) != NULL);
-    int status;
-    return pid > 0 && wait4(pid, &status, 0, &usage) == pid && status == 0 ? (size_t)usage.ru_maxrss << 10 : 0;
-}
-
 /* In a process of its own; the verdict goes to standard error. */
 static void torture(const char *path, const char *copy, const struct bytes *whole)
 {
@@ -245,7 +222,7 @@ static void torture(const char *path, const char *copy, const struct bytes *whol
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);
     size_t peak = (size_t)usage.ru_maxrss << 10, most = 16 * (whole->size + folder_B) + free_B;
-    if (!SANITIZED && peak > most + ((size_t)32 << 20) /* the program itself, with its tables */ && peak > honest_peak_B(path) / 4 * 5) {
+    if (!SANITIZED && peak > most + ((size_t)32 << 20) /* the program itself, with its tables */) {
         fprintf(stderr, "%s: %zu MiB at the peak, of %zu MiB that are allowed\n", path, peak >> 20, most >> 20);
         _exit(1);
     }

@@ -14,18 +14,6 @@
 #include <unistd.h>
 #include <zlib.h>
 
-static size_t address_space_B(void)
-{
-    unsigned long pages = 0;
-    FILE *f = fopen("/proc/self/statm", "r");
-    if (f) {
-        if (fscanf(f, "%lu", &pages) != 1)
-            pages = 0;
-        fclose(f);
-    }
-    return (size_t)pages * (size_t)sysconf(_SC_PAGESIZE);
-}
-
 /* 0: read; 1: refused for its bytes; else wrong. */
 static int judge(const char *label, const void *data, size_t size)
 {
@@ -55,7 +43,7 @@ static int judge_alone(const char *label, const void *data, size_t size, size_t 
         for (int s = 1; s < 32; ++s)
             signal(s, SIG_DFL);
         alarm(60);
-        struct rlimit r = {address_space_B() + 16 * size + free_B, RLIM_INFINITY};
+        struct rlimit r = {test_address_space_B() + 16 * size + free_B, RLIM_INFINITY};
         if (!is_slow_build()) // sanitizers need the space
             setrlimit(RLIMIT_AS, &r);
         _exit(judge(label, data, size));

@@ -5,15 +5,12 @@
 #include "truth/rays.h"
 
 #include <inttypes.h>
-#include <stdarg.h>
 
 void test_fail(const char *file, int line, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    fprintf(stderr, "%s:%d: ", file, line);
-    vfprintf(stderr, format, arguments);
-    fputc('\n', stderr);
+    test_print_failure(file, line, format, arguments);
     va_end(arguments);
     exit(1);
 }

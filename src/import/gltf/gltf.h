@@ -41,6 +41,7 @@ struct sr_gltf_object {
     const char *name;   // of the object of the description; NULL: not made, or empty
     bool is_made;
     struct sr_box bounds;
+    struct sr_gltf_part *parts; // one for each primitive; NULL: none has a form
 };
 
 struct sr_gltf {
@@ -60,6 +61,8 @@ struct sr_gltf {
     struct sr_pbrt_names made;      // textures and media that have been composed
     struct sr_pbrt_names worn_names;
     struct sr_array worn;           // materials.c
+    struct sr_pbrt_names form_names;
+    struct sr_array forms;          // struct sr_gltf_form
     struct sr_box bounds;           // of all that was placed [m]
     uint32_t light_count;
     bool has_emissive;
@@ -159,6 +162,21 @@ struct sr_gltf_stores {
 /* false: nothing to draw (told), or an error. uv_sets: bits. */
 bool sr_gltf_read_mesh(struct sr_gltf *g, const struct sr_gltf_at *primitive, const struct sr_gltf_pose *pose, uint32_t uv_sets,
                        struct sr_gltf_stores stores, struct sr_gltf_mesh *out);
+/* forms.c: what primitives of several meshes share, which differ by their materials alone. */
+struct sr_gltf_form {
+    uint32_t uses, triangles; // by primitives
+    bool is_read;
+    struct sr_gltf_mesh mesh;
+    struct sr_box bounds;
+    uint32_t object1; // of the description: the first that was made of it
+};
+struct sr_gltf_part { // a primitive
+    uint32_t form1;
+    bool is_made;
+    const char *name; // of its object
+};
+void sr_gltf_find_forms(struct sr_gltf *g); // once the uses of meshes are counted
+struct sr_gltf_form *sr_gltf_form_of(struct sr_gltf *g, uint32_t mesh, uint32_t primitive); // NULL: it stands for itself
 /* pose.c: what a node wears. false: an error. Kept in arena. */
 bool sr_gltf_read_pose(struct sr_gltf *g, uint32_t node, const struct sr_gltf_at *mesh, struct sr_arena *arena, struct sr_gltf_pose *pose);
 
@@ -223,6 +241,7 @@ uint32_t sr_gltf_emission(struct sr_gltf *g, const struct sr_gltf_look *look, co
 void sr_gltf_compose_trs(const double t[3], const double q[4], const double s[3], double out[4][4]);
 void sr_gltf_place_nodes(struct sr_gltf *g);
 struct sr_transform sr_gltf_transform_of(const double m[4][4]);
+uint32_t sr_gltf_material_of(struct sr_gltf *g, const struct sr_gltf_at *primitive); // from 1; 0: none
 void sr_gltf_place_meshes(struct sr_gltf *g);
 void sr_gltf_place_lights(struct sr_gltf *g);
 void sr_gltf_place_camera(struct sr_gltf *g, sr_vec3 *key); // key: where a bright region of the sky does well

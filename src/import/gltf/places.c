@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Meshes where nodes show them: as shapes of the world, or, where several nodes show one mesh in one pose, as an object and
- * its instances. What glows is of the world always, for objects cannot.
+ * its instances. What glows is of the world always, for objects cannot. Primitives of one form (forms.c) become objects that are like one another.
  *
  * Where a material looks for several coordinates, or the vertices have colours, each triangle gets vertices of its own,
  * with barycentric coordinates as (u, v) and its number as the face: textures find their values by these (texture
@@ -18,8 +18,10 @@ struct place { // where a mesh is to be shown
     uint32_t count;
     uint32_t object1; // or the object that it becomes a part of
     const struct sr_gltf_pose *pose;
+    bool is_posed;        // by the node
     struct sr_box bounds; // of what was added, where it lies before it is placed [m]
 };
+enum kind { PLAIN = 1, GLOWING = 2, FORMED = 4 };
 
 /* ---- tangents ---- */
 
@@ -122,7 +124,7 @@ static void place_uv(sr_vec2 *uv, uint32_t count, const double u[6], bool is_emi
 
 /* ---- primitives ---- */
 
-static uint32_t material_of(struct sr_gltf *g, const struct sr_gltf_at *primitive)
+uint32_t sr_gltf_material_of(struct sr_gltf *g, const struct sr_gltf_at *primitive)
 {
     uint32_t count = sr_gltf_root_count(g, "materials"), material1 = sr_gltf_index1(g, primitive, "material", count);
     struct sr_gltf_at variants = sr_gltf_extension(g, primitive, "KHR_materials_variants"), mappings = sr_gltf_array(g, &variants, "mappings");
@@ -181,14 +183,13 @@ static bool has_attribute(struct sr_gltf *g, const struct sr_gltf_at *primitive,
     return attributes.json && json_object_get(attributes.json, format ? format : name);
 }
 
-static void place_primitive(struct place *p, const struct sr_gltf_at *primitive, uint32_t mesh, uint32_t number, bool only_glowing)
+/* form: where its mesh is, or goes to; NULL: none. */
+static void add_primitive(struct place *p, const struct sr_gltf_at *primitive, uint32_t mesh, uint32_t number, struct sr_gltf_form *form)
 {
     struct sr_gltf *g = p->g;
-    uint32_t material1 = material_of(g, primitive), present = 0;
+    uint32_t material1 = sr_gltf_material_of(g, primitive), present = 0;
     struct sr_gltf_look look;
     sr_gltf_read_look(g, material1, &look);
-    if (p->object1 ? look.is_emissive : only_glowing && !look.is_emissive)
-        return; // belongs to the other kind
     struct sr_gltf_needs needs = sr_gltf_needs_of(&look);
     for (uint32_t set = 0; set < SR_GLTF_UV_SETS; ++set)
         if (needs.uv_sets >> set & 1) {
@@ -204,9 +205,10 @@ static void place_primitive(struct place *p, const struct sr_gltf_at *primitive,
     if (is_split)
         stores.words = stores.data = &own;
     uint64_t made_B = g->made_B;
-    struct sr_gltf_mesh m, apart;
+    struct sr_gltf_mesh m = form ? form->mesh : (struct sr_gltf_mesh){0}, apart;
+    bool is_read = form && form->is_read;
     if (!sr_gltf_charge(g, primitive, (uint64_t)SHAPE_B * (p->object1 ? 1 : p->count)) ||
-        !sr_gltf_read_mesh(g, primitive, p->pose, present, stores, &m)) {
+        (!is_read && !sr_gltf_read_mesh(g, primitive, p->pose, present, stores, &m))) {
         sr_arena_free(&own);
         return;
     }
@@ -226,10 +228,14 @@ static void place_primitive(struct place *p, const struct sr_gltf_at *primitive,
                 s.corner_uv[set] = sr_gltf_array_for(g, primitive, g->c.d->data, apart.vertex_count, sizeof(sr_vec2));
         m = apart;
         g->made_B -= own_B;
-    } else {
+    } else if (!is_read) {
         m.uv[0] = m.uv[needs.mesh_set];
         if (m.uv[0])
             place_uv(m.uv[0], m.vertex_count, needs.uv_transform, look.emission_texture.info.json != NULL);
+    }
+    if (form) {
+        form->mesh = m;
+        form->is_read = true;
     }
     const char *alpha = NULL;
     g->c.where.file = sr_compose_printf(&g->c, "%s: /materials/%d", g->c.path, (int)material1 - 1);
@@ -242,40 +248,83 @@ static void place_primitive(struct place *p, const struct sr_gltf_at *primitive,
     sr_arena_free(&own);
 }
 
+static void add_instances(struct place *p, const char *object, struct sr_box bounds)
+{
+    struct sr_gltf *g = p->g;
+    for (uint32_t i = 0; i < p->count && object && sr_gltf_is_well(g); ++i) {
+        if (!sr_transform_is_valid(&p->to_world[i]) || !sr_gltf_charge(g, NULL, INSTANCE_B))
+            continue;
+        g->c.transform = sr_compose_transform(&g->c, &p->to_world[i]);
+        sr_compose_instance(&g->c, object);
+        g->c.transform = 0;
+        g->bounds = sr_box_union(g->bounds, sr_box_transform(&p->to_world[i], bounds));
+    }
+}
+
+static void place_formed(struct place *p, const struct sr_gltf_at *primitive, uint32_t mesh, uint32_t number, struct sr_gltf_form *form)
+{
+    struct sr_compose *to = &p->g->c;
+    struct sr_gltf_part *part = &p->g->objects[mesh].parts[number];
+    if (!part->is_made) {
+        size_t before = to->d->shapes.count;
+        struct place apart = *p;
+        const char *name = sr_compose_printf(to, "mesh%u.%u", mesh, number);
+        apart.bounds = sr_box_empty();
+        apart.object1 = sr_compose_object(to, name);
+        add_primitive(&apart, primitive, mesh, number, form);
+        part->is_made = true;
+        if (to->d->shapes.count > before && sr_gltf_is_well(p->g)) {
+            part->name = name;
+            form->bounds = apart.bounds;
+            SR_PBRT_AT(to->d->objects, struct sr_pbrt_object, apart.object1 - 1)->like1 = form->object1;
+            form->object1 = form->object1 ? form->object1 : apart.object1;
+        }
+    }
+    add_instances(p, part->name, form->bounds);
+}
+
+/* kinds: those that are wanted. */
+static void place_primitive(struct place *p, const struct sr_gltf_at *primitive, uint32_t mesh, uint32_t number, unsigned kinds)
+{
+    struct sr_gltf_look look;
+    sr_gltf_read_look(p->g, sr_gltf_material_of(p->g, primitive), &look);
+    struct sr_gltf_form *form = p->is_posed ? NULL : sr_gltf_form_of(p->g, mesh, number);
+    enum kind kind = look.is_emissive ? GLOWING : form ? FORMED : PLAIN;
+    if (!(kinds & kind) || !sr_gltf_is_well(p->g))
+        return;
+    if (kind == FORMED)
+        place_formed(p, primitive, mesh, number, form);
+    else
+        add_primitive(p, primitive, mesh, number, NULL);
+}
+
 /* ---- meshes ---- */
 
-static void place_all(struct place *p, uint32_t mesh, bool only_glowing)
+static void place_all(struct place *p, uint32_t mesh, unsigned kinds)
 {
     struct sr_gltf_at at = sr_gltf_entry(p->g, "meshes", mesh), primitives = sr_gltf_array(p->g, &at, "primitives");
     for (uint32_t i = 0; i < sr_gltf_count(&primitives) && sr_gltf_is_well(p->g); ++i) {
         struct sr_gltf_at primitive = sr_gltf_element(p->g, &primitives, i);
-        place_primitive(p, &primitive, mesh, i, only_glowing);
+        place_primitive(p, &primitive, mesh, i, kinds);
     }
 }
 
-static void place_object(struct sr_gltf *g, uint32_t mesh, const struct sr_transform *to_world, uint32_t count, const struct sr_gltf_pose *pose)
+static void place_object(struct place *p, uint32_t mesh)
 {
+    struct sr_gltf *g = p->g;
     struct sr_gltf_object *o = &g->objects[mesh];
-    struct place p = {.g = g, .to_world = to_world, .count = count, .pose = pose, .bounds = sr_box_empty()};
     if (!o->is_made) {
         size_t before = g->c.d->shapes.count;
         const char *name = sr_compose_printf(&g->c, "mesh%u", mesh);
-        p.object1 = sr_compose_object(&g->c, name);
-        place_all(&p, mesh, false);
+        p->object1 = sr_compose_object(&g->c, name);
+        place_all(p, mesh, PLAIN);
         o->name = g->c.d->shapes.count > before ? name : NULL;
-        o->bounds = p.bounds;
+        o->bounds = p->bounds;
         o->is_made = true;
-        p.object1 = 0;
+        p->object1 = 0;
     }
-    place_all(&p, mesh, true);
-    for (uint32_t i = 0; i < count && o->name && sr_gltf_is_well(g); ++i) {
-        if (!sr_transform_is_valid(&to_world[i]) || !sr_gltf_charge(g, NULL, INSTANCE_B))
-            continue;
-        g->c.transform = sr_compose_transform(&g->c, &to_world[i]);
-        sr_compose_instance(&g->c, o->name);
-        g->c.transform = 0;
-        g->bounds = sr_box_union(g->bounds, sr_box_transform(&to_world[i], o->bounds));
-    }
+    place_all(p, mesh, GLOWING | FORMED);
+    add_instances(p, o->name, o->bounds);
 }
 
 /* ---- nodes ---- */
@@ -344,11 +393,11 @@ static void place_node(struct sr_gltf *g, uint32_t node, const struct sr_gltf_at
             places[0] = sr_transform_identity();
             count = 1;
         }
-        struct place p = {.g = g, .to_world = places, .count = count, .pose = &pose, .bounds = sr_box_empty()};
-        if (g->objects[mesh].uses > 1 && !has_own_pose(at))
-            place_object(g, mesh, places, count, &pose);
+        struct place p = {.g = g, .to_world = places, .count = count, .pose = &pose, .is_posed = has_own_pose(at), .bounds = sr_box_empty()};
+        if (g->objects[mesh].uses > 1 && !p.is_posed)
+            place_object(&p, mesh);
         else
-            place_all(&p, mesh, false);
+            place_all(&p, mesh, PLAIN | GLOWING | FORMED);
         g->made_B -= own_B;
     }
     sr_arena_free(&own);
@@ -360,7 +409,7 @@ void sr_gltf_place_meshes(struct sr_gltf *g)
     g->objects = sr_gltf_array_for(g, NULL, &g->scratch, sr_gltf_root_count(g, "meshes"), sizeof *g->objects);
     g->images = sr_gltf_array_for(g, NULL, &g->scratch, sr_gltf_root_count(g, "images"), sizeof *g->images);
     g->bounds = sr_box_empty();
-    for (int pass = 0; pass < 2; ++pass)
+    for (int pass = 0; pass < 2; ++pass) {
         for (uint32_t i = 0; i < g->node_count && sr_gltf_is_well(g); ++i) {
             if (!g->nodes[i].is_of_scene)
                 continue;
@@ -373,4 +422,7 @@ void sr_gltf_place_meshes(struct sr_gltf *g)
                 g->objects[mesh1 - 1].uses = uses < UINT32_MAX ? (uint32_t)uses : UINT32_MAX;
             }
         }
+        if (pass == 0)
+            sr_gltf_find_forms(g);
+    }
 }

@@ -56,8 +56,10 @@ sr_status sr_gltf_read_bytes(const char *label, const char *bytes, size_t size, 
     sr_arena_free(&g.scratch);
     sr_array_free(&g.told);
     sr_array_free(&g.worn);
+    sr_array_free(&g.forms);
     sr_pbrt_names_free(&g.made);
     sr_pbrt_names_free(&g.worn_names);
+    sr_pbrt_names_free(&g.form_names);
     return sr_compose_end(&g.c);
 }
 

@@ -295,7 +295,7 @@ uint32_t sr_compose_object(struct sr_compose *c, const char *name)
     struct sr_pbrt_object *slot = push(c, &c->d->objects, sizeof *slot);
     if (!slot)
         return 0;
-    *slot = (struct sr_pbrt_object){sr_compose_word(c, name), c->where};
+    *slot = (struct sr_pbrt_object){.name = sr_compose_word(c, name), .where = c->where};
     add_name(c, &c->d->object_names, slot->name, c->d->objects.count);
     return (uint32_t)c->d->objects.count;
 }

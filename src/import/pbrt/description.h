@@ -96,6 +96,7 @@ struct sr_pbrt_light {
 struct sr_pbrt_object {
     const char *name;
     struct sr_location where;
+    uint32_t like1; // index from 1: it has one shape, which is that of this earlier object in another material; 0: its own
 };
 struct sr_pbrt_instance {
     const char *name;

@@ -343,7 +343,7 @@ static sr_status read_object_begin(struct sr_pbrt_parser *p)
     struct sr_pbrt_object *object = status == SR_OK ? sr_array_push(&p->d->objects, sizeof *object) : NULL;
     if (!object)
         return status != SR_OK ? status : no_memory(p);
-    *object = (struct sr_pbrt_object){name, p->where};
+    *object = (struct sr_pbrt_object){.name = name, .where = p->where};
     p->object1 = (uint32_t)p->d->objects.count;
     if (!sr_pbrt_names_add(&p->d->object_names, name, p->object1))
         return no_memory(p);

@@ -36,6 +36,7 @@ struct loaded {
 struct adder {
     struct sr_pbrt_build *b;
     sr_object_id *objects;
+    struct sr_shape *first_shapes; // of each object; model NULL: none yet
     struct loaded *window;
     size_t window_start, window_size;
     bool has_warned_object_light, has_warned_curve_light;
@@ -260,6 +261,14 @@ static sr_status make_shape(struct adder *a, const struct sr_pbrt_shape *s, stru
     return status == SR_OK ? prepare(b, s, m, self, &shapes[(*count)++]) : status;
 }
 
+/* That of another object; its parameters are known there. */
+static void take_shape(const struct sr_pbrt_shape *s, struct sr_shape shape, struct sr_shape shapes[], int *count)
+{
+    for (uint32_t i = 0; i < s->entity.params.count; ++i)
+        s->entity.params.items[i].used = true;
+    shapes[(*count)++] = shape;
+}
+
 static sr_status find_emission(struct adder *a, const struct sr_pbrt_shape *s, const struct sr_shape shapes[],
                                int count, const struct sr_light_emission **out)
 {
@@ -344,7 +353,10 @@ static sr_status add_shape(struct adder *a, const struct sr_pbrt_shape *s, struc
         status = sr_pbrt_material(b, &s->material, &def.material);
     if (status == SR_OK)
         status = sr_pbrt_bind(b, common_params, &s->entity, (struct sr_pbrt_use){SR_PARAM_ALBEDO, false}, &common);
-    if (status == SR_OK)
+    uint32_t like1 = s->object1 ? SR_PBRT_AT(b->d->objects, struct sr_pbrt_object, s->object1 - 1)->like1 : 0;
+    if (like1)
+        take_shape(s, a->first_shapes[like1 - 1], shapes, &count);
+    else if (status == SR_OK)
         status = sr_pbrt_is_curve(s) ? make_curves(a, s, &shapes[count++], run) : make_shape(a, s, l, shapes, &count);
     if (status == SR_OK)
         status = find_emission(a, s, shapes, count, &def.emission);
@@ -357,6 +369,8 @@ static sr_status add_shape(struct adder *a, const struct sr_pbrt_shape *s, struc
         return b->error->status;
     if (sr_pbrt_moves(b, s->entity.transform) && !def.motion)
         sr_pbrt_warn(b->d, s->entity.where, "a shape that shines cannot move: it stands where it is when the shutter opens");
+    if (s->object1 && count > 0 && !a->first_shapes[s->object1 - 1].model)
+        a->first_shapes[s->object1 - 1] = shapes[0];
     for (int i = 0; i < count; ++i) {
         def.shape = shapes[i];
         sr_scene_add_shape(b->result->scene, &def);
@@ -409,9 +423,11 @@ static sr_status build(struct adder *a)
     struct sr_pbrt_build *b = a->b;
     const struct sr_pbrt_shape *shapes = b->d->shapes.data;
     size_t n = b->d->shapes.count, window = 32 * (size_t)b->threads;
-    for (size_t i = 0; i < n; ++i) // empty objects stay out
-        if (shapes[i].object1 && !a->objects[shapes[i].object1 - 1].index1)
-            a->objects[shapes[i].object1 - 1] = sr_scene_add_object(b->result->scene);
+    for (size_t i = 0; i < n; ++i) { // empty objects stay out
+        uint32_t object1 = shapes[i].object1, like1 = object1 ? SR_PBRT_AT(b->d->objects, struct sr_pbrt_object, object1 - 1)->like1 : 0;
+        if (object1 && !a->objects[object1 - 1].index1)
+            a->objects[object1 - 1] = like1 ? sr_scene_add_object_like(b->result->scene, a->objects[like1 - 1]) : sr_scene_add_object(b->result->scene);
+    }
     sr_status status = SR_OK;
     for (size_t start = 0; start < n && status == SR_OK;) {
         size_t size = n - start < window ? n - start : window, run;
@@ -425,6 +441,7 @@ static sr_status build(struct adder *a)
 
 sr_status sr_pbrt_build_shapes(struct sr_pbrt_build *b)
 {
-    struct adder a = {.b = b, .objects = sr_arena_alloc(&b->scratch, b->d->objects.count * sizeof(sr_object_id))};
-    return a.objects ? build(&a) : sr_pbrt_no_memory(b);
+    struct adder a = {.b = b, .objects = sr_arena_alloc(&b->scratch, b->d->objects.count * sizeof(sr_object_id)),
+                      .first_shapes = sr_arena_alloc(&b->scratch, b->d->objects.count * sizeof(struct sr_shape))};
+    return a.objects && a.first_shapes ? build(&a) : sr_pbrt_no_memory(b);
 }

@@ -276,6 +276,41 @@ TEST(gltf_mesh_of_two_nodes_is_an_object)
     done();
 }
 
+/* Three meshes of the same accessors, 3000 triangles of the one corner (accessors without a view are zeros), in two materials. */
+static void describe_one_form(const char *second_material)
+{
+    char rest[4096];
+    put_triangle();
+    snprintf(rest, sizeof rest,
+             VIEWS "]," ACCESSORS ",{\"componentType\":5123,\"count\":9000,\"type\":\"SCALAR\"}],"
+                   "\"materials\":[{},{%s}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]},"
+                   "{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":0}]},"
+                   "{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":1}]}],"
+                   "\"nodes\":[{\"mesh\":0},{\"mesh\":1,\"translation\":[3,0,0]},{\"mesh\":2,\"translation\":[6,0,0]}],\"scenes\":[{\"nodes\":[0,1,2]}]",
+             second_material);
+    describe(rest);
+}
+
+TEST(gltf_meshes_of_the_same_accessors_are_objects_that_are_like_one_another)
+{
+    describe_one_form("\"pbrMetallicRoughness\":{\"metallicFactor\":0}");
+    EXPECT_EQUAL_INT(d.shapes.count, 3);
+    EXPECT_EQUAL_INT(d.instances.count, 3);
+    EXPECT(floats_of(0, "P", 3) == floats_of(2, "P", 3)); // the very same
+    for (uint32_t i = 0; i < 3; ++i)
+        EXPECT_EQUAL_INT(SR_PBRT_AT(d.objects, struct sr_pbrt_object, i)->like1, i ? 1 : 0);
+    EXPECT(strcmp(shape(0)->material.name, shape(2)->material.name) != 0);
+    done();
+}
+
+TEST(gltf_meshes_that_glow_stand_for_themselves)
+{
+    describe_one_form("\"emissiveFactor\":[1,1,1]");
+    EXPECT_EQUAL_INT(d.shapes.count, 3);
+    EXPECT_EQUAL_INT(d.instances.count, 0); // two are left of one form, which saves less than it costs
+    done();
+}
+
 TEST(gltf_instances_of_one_node)
 {
     put_triangle();
