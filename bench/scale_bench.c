@@ -71,8 +71,8 @@ static bool triangles(const char *folder, uint64_t n, char *path, size_t size)
                 fwrite(face[k], sizeof face[k], 1, mesh);
             }
         }
-    bool is_good = !ferror(f) && !ferror(mesh);
-    return (fclose(f) == 0) & (fclose(mesh) == 0) & is_good;
+    bool is_good = !ferror(f) && !ferror(mesh), is_closed = fclose(f) == 0;
+    return fclose(mesh) == 0 && is_closed && is_good;
 }
 
 static void room(FILE *f)

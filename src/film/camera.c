@@ -88,7 +88,7 @@ void sr_film_camera_matrix(uint32_t camera1, double T, enum sr_colour_space_id s
     const struct camera_data *camera = &camera_data[camera1 - 1];
     struct sr_spd white = {.kind = SR_SPD_TABLE, .scale = 1, .table = sr_colour_space(space)->illuminant};
     double seen[PATCHES][3] = {{0}}, wanted[PATCHES][3] = {{0}}, green = 0, luminance = 0, white_Y = 0;
-    for (int nm = SR_LAMBDA_MIN; nm <= SR_LAMBDA_MAX; ++nm) {
+    for (int nm = SR_LAMBDA_MIN; (float)nm <= SR_LAMBDA_MAX; ++nm) {
         double source = source_at(T, nm), target = (double)sr_spd_at(&white, (float)nm), observer[3], curve[3];
         sr_observer_1931(nm, observer);
         for (int c = 0; c < 3; ++c)

@@ -15,24 +15,24 @@ static const struct {
     double limit;       // NaN: depends
     bool is_comparison; // 0: equal
 } kinds[CHECKS] = {
-    [CHECK_FINITE] = {"finite", "1", 0},
-    [CHECK_NON_NEGATIVE] = {"non-negative", "1/sr", 0},
+    [CHECK_FINITE] = {"finite", "1", 0, false},
+    [CHECK_NON_NEGATIVE] = {"non-negative", "1/sr", 0, false},
     [CHECK_RECIPROCITY] = {"reciprocity", "1", 2e-3, true},
     [CHECK_ADJOINT] = {"adjoint", "1", 2e-3, true},
-    [CHECK_ENERGY] = {"energy", "1", 1},
+    [CHECK_ENERGY] = {"energy", "1", 1, false},
     [CHECK_ALBEDO] = {"albedo", "1", (double)NAN, true},
-    [CHECK_NORMALISATION] = {"normalisation", "1", 1.0005},
-    [CHECK_LOST] = {"lost samples", "1", (double)NAN},
-    [CHECK_SAMPLING] = {"sampling", "1", (double)NAN},
-    [CHECK_LIGHT] = {"light", "1", (double)NAN},
+    [CHECK_NORMALISATION] = {"normalisation", "1", 1.0005, false},
+    [CHECK_LOST] = {"lost samples", "1", (double)NAN, false},
+    [CHECK_SAMPLING] = {"sampling", "1", (double)NAN, false},
+    [CHECK_LIGHT] = {"light", "1", (double)NAN, false},
     [CHECK_F_PDF] = {"f_pdf", "1", 0, true},
     [CHECK_SAMPLE] = {"sample", "1", 2e-3, true},
-    [CHECK_SUPPORT] = {"support", "1/sr", 0},
-    [CHECK_LOBES] = {"lobes", "1", 0},
+    [CHECK_SUPPORT] = {"support", "1/sr", 0, false},
+    [CHECK_LOBES] = {"lobes", "1", 0, false},
     [CHECK_DOUBLE] = {"double", "1", 2e-3, true},
-    [CHECK_GRAZING] = {"grazing", "1", 1},
-    [CHECK_NORMAL] = {"normal incidence", "1", 0.05},
-    [CHECK_ENDS] = {"range ends", "1", 1},
+    [CHECK_GRAZING] = {"grazing", "1", 1, false},
+    [CHECK_NORMAL] = {"normal incidence", "1", 0.05, false},
+    [CHECK_ENDS] = {"range ends", "1", 1, false},
 };
 
 void lab_find(struct certifying *c, enum check check, double measured, bool failed, const char *format, ...)

@@ -82,10 +82,10 @@ static const char *range_of(const struct sr_param *p, char buffer[160])
             to = *c == '|' ? (memcpy(to, ", ", 2), to + 2) : (*to = *c, to + 1);
         *to = 0;
     } else if (is_number(p->kind) && p->min < p->max && !(isinf(p->min) && isinf(p->max))) {
-        if (isinf(p->max) || p->max >= 1 << 30)
-            snprintf(buffer, 160, p->min > -1e9 ? "%.7g …" : "", p->min);
-        else
+        if (!isinf(p->max) && p->max < 1 << 30)
             snprintf(buffer, 160, "%.7g … %.7g", p->min, p->max);
+        else if (p->min > -1e9)
+            snprintf(buffer, 160, "%.7g …", p->min);
     }
     return buffer;
 }
