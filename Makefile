@@ -6,7 +6,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 OUT ?= out
 SECONDS ?= 60
 
-.PHONY: all render test test-asan test-tsan fuzz soak soak-rays mutants validate bench pgo check format format-reference install clean packages
+.PHONY: all render test test-asan test-tsan fuzz soak soak-rays same-bytes mutants validate bench pgo check format format-reference install clean packages
 
 all: packages
 	@cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release >$(BUILD).log 2>&1 || { cat $(BUILD).log; exit 1; }
@@ -45,6 +45,10 @@ fuzz: packages
 # what takes long to go wrong: renders killed, interrupted and starved of disk, and resumed (docs/guide/long-renders.md)
 soak: all
 	python3 tests/soak/resume.py $(BUILD)/steradian --fault $(BUILD)/tests/libsoak_fault.so
+
+# each picture by threads x tiles x ranks, in parts, killed and gone on with: always one SHA-256 (docs/robustness.md); half an hour
+same-bytes: all
+	python3 tests/soak/same_bytes.py $(BUILD)/steradian $(BUILD)/steradian-mpi
 
 # scenes whose answers are known, to a relative standard uncertainty of GOAL
 GOAL ?= 0.0125%
