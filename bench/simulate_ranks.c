@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* What a picture would take on more processors than there are: recorded costs of its units, dealt as steradian-mpi deals them.
  *
- * Events: a thread ends a unit; a wish, a deal, a batch of finished units arrives. Rank 0 serves what arrives one by one:
+ * Events: a thread ends a unit; a wish, a deal, a batch of finished units, a helper's farewell arrives. Rank 0 serves what arrives one by one:
  *
  *     start = arrival + nap / 2 where it was idle, else when it is free;    busy for  serve + bytes * (take + 1 / bandwidth)
  *
  * A message of B bytes is under way for  latency + B / bandwidth.  Deals come from the very code of steradian-mpi (pool.c).
  * Limits: threads of a rank do not slow each other down, rank 0's messages take no processor from its threads, the network has no
- * neighbours; the wait of a tile's blocks for each other is left out. docs/guide/many-machines.md */
-#include "base/base.h"
+ * neighbours; the wait of a tile's blocks for each other is left out, and splats, whose batches are fewer and larger. What it
+ * foretells is compared with real deals and messages by bench/rehearse-ranks. docs/guide/many-machines.md */
+#include "recorded.h"
 #include "../tools/steradian-mpi/pool.h"
 
 #include <math.h>
@@ -39,33 +40,33 @@ struct model {
     uint32_t threads, pixels;
 };
 
-struct log {
-    uint32_t tiles, blocks;
-    double *cost_s;    // [tile * blocks + block]
-    double unit_B, take_s;
-};
-
 /* ---- events ---- */
 
-enum kind { UNIT_ENDS, WISH_ARRIVES, DEAL_ARRIVES, BATCH_ARRIVES };
+enum kind { UNIT_ENDS, WISH_ARRIVES, DEAL_ARRIVES, BATCH_ARRIVES, PASSED_ARRIVES };
 struct event {
     double at_s;
     enum kind kind;
     uint32_t rank;
-    struct deal deal; // of a unit: its tile and block; of a batch: begin is the number of units
+    struct deal deal;            // of a unit: its tile and block
+    uint32_t units, tiles;       // of a batch: how many are done with it
+    double cost_s;               // of these units
 };
 
 struct rank {
     struct deal deals[4];
     uint32_t deal_count, idle;
     uint64_t position, waiting; // waiting: dealt and not begun
-    bool is_asked, is_exhausted, has_share;
-    uint32_t batch;             // units that have not been sent
+    bool is_asked, is_exhausted, has_share, has_passed;
+    struct event batch;         // what has not been sent
     double batch_since_s;
 };
 
+// steradian-mpi's: src/render/crew.c, pump.c
+static const double BATCH_INTERVAL_S = 0.1;
+enum { ENOUGH_B = 1 << 20, PIECE_B = 4 << 20, GREETINGS = 2 }; // a helper says that it is ready, and that it has ended
+
 struct simulation {
-    const struct log *log;
+    const struct recorded *log;
     const struct model *model;
     struct pool pool;
     struct rank *ranks;
@@ -120,7 +121,7 @@ static double served_s(struct simulation *s, double at_s, double bytes)
     double start = s->owner_free_s > at_s ? s->owner_free_s : at_s + s->model->nap_s / 2;
     s->owner_free_s = start + busy;
     s->owner_busy_s += busy;
-    s->messages += 1;
+    s->messages += 1 + (uint64_t)(bytes / PIECE_B);
     s->bytes += bytes;
     return s->owner_free_s;
 }
@@ -141,7 +142,17 @@ static void give(struct simulation *s, struct rank *rank, const struct deal *d)
     rank->waiting += (uint64_t)deal_tiles(d) * s->log->blocks;
 }
 
-/* Idle threads begin what there is; whoever runs short asks for more. */
+static void send_batch(struct simulation *s, struct rank *rank, uint32_t r, double now_s)
+{
+    rank->batch.kind = BATCH_ARRIVES;
+    rank->batch.rank = r;
+    rank->batch.at_s = now_s + s->model->nap_s / 2 + way_s(s, rank->batch.units * s->log->unit_B);
+    push(s, rank->batch);
+    rank->batch = (struct event){0};
+    rank->batch_since_s = now_s;
+}
+
+/* Idle threads begin what there is; whoever runs short asks for more; a helper without work sends what it has and says that it is through. */
 static void go_on(struct simulation *s, uint32_t r, double now_s)
 {
     struct rank *rank = &s->ranks[r];
@@ -167,26 +178,29 @@ static void go_on(struct simulation *s, uint32_t r, double now_s)
         rank->is_asked = true;
         push(s, (struct event){.at_s = now_s + s->model->nap_s / 2 + way_s(s, 0), .kind = WISH_ARRIVES, .rank = r});
     }
+    if (r && rank->is_exhausted && !rank->has_passed && rank->deal_count == 0 && rank->idle == s->model->threads) {
+        rank->has_passed = true;
+        send_batch(s, rank, r, now_s);
+        push(s, (struct event){.at_s = now_s + s->model->nap_s / 2 + way_s(s, 0), .kind = PASSED_ARRIVES, .rank = r});
+    }
 }
 
 static void end_unit(struct simulation *s, const struct event *e)
 {
     struct rank *rank = &s->ranks[e->rank];
+    double cost_s = unit_cost_s(s, e->deal.begin, e->deal.end);
+    bool is_tile_done = e->deal.end + 1 == s->log->blocks;
     ++rank->idle;
     if (e->rank == 0) {
-        s->pool.cost_s += unit_cost_s(s, e->deal.begin, e->deal.end);
-        s->pool.done += e->deal.end + 1 == s->log->blocks;
+        s->pool.cost_s += cost_s;
+        s->pool.done += is_tile_done;
         s->end_s = fmax(s->end_s, e->at_s);
     } else {
-        if (rank->batch++ == 0)
-            rank->batch_since_s = rank->batch_since_s > 0 ? rank->batch_since_s : e->at_s;
-        bool is_last = rank->idle == s->model->threads && rank->waiting == 0;
-        if (e->at_s - rank->batch_since_s >= 0.1 || rank->batch * s->log->unit_B >= 1 << 20 || is_last) {
-            double bytes = rank->batch * s->log->unit_B;
-            push(s, (struct event){.at_s = e->at_s + s->model->nap_s / 2 + way_s(s, bytes), .kind = BATCH_ARRIVES, .rank = e->rank, .deal = {rank->batch, 0, 1}});
-            rank->batch = 0;
-            rank->batch_since_s = e->at_s;
-        }
+        rank->batch.units += 1;
+        rank->batch.tiles += is_tile_done;
+        rank->batch.cost_s += cost_s;
+        if (e->at_s - rank->batch_since_s >= BATCH_INTERVAL_S || rank->batch.units * s->log->unit_B >= ENOUGH_B)
+            send_batch(s, rank, e->rank, e->at_s);
     }
     go_on(s, e->rank, e->at_s);
 }
@@ -213,18 +227,19 @@ static void happen(struct simulation *s, struct event *e)
             rank->is_exhausted = true;
         go_on(s, e->rank, e->at_s);
         break;
-    case BATCH_ARRIVES: {
-        double done_s = served_s(s, e->at_s, e->deal.begin * s->log->unit_B);
-        double mean_s = s->work_s / (double)(s->pool.done + 1); // what the owner knows of costs: means are enough
-        s->pool.done += e->deal.begin / s->log->blocks;
-        s->pool.cost_s += mean_s * (e->deal.begin / s->log->blocks);
-        s->end_s = fmax(s->end_s, done_s);
+    case BATCH_ARRIVES:
+        s->end_s = fmax(s->end_s, served_s(s, e->at_s, e->units * s->log->unit_B));
+        s->pool.done += e->tiles;
+        s->pool.cost_s += e->cost_s;
         break;
-    }
+    case PASSED_ARRIVES:
+        s->end_s = fmax(s->end_s, served_s(s, e->at_s, 0));
+        s->messages += GREETINGS;
+        break;
     }
 }
 
-static void simulate(const struct log *log, const struct model *m, uint32_t ranks, bool is_tsv)
+static void simulate(const struct recorded *log, const struct model *m, uint32_t ranks, bool is_tsv)
 {
     struct simulation s = {.log = log, .model = m, .rank_count = ranks, .ranks = sr_alloc(ranks * sizeof *s.ranks),
                            .pool = {.tiles = log->tiles * m->pixels, .threads = ranks * m->threads}};
@@ -243,48 +258,6 @@ static void simulate(const struct log *log, const struct model *m, uint32_t rank
            efficiency * (is_tsv ? 1 : 100), (unsigned long long)s.messages, s.bytes * (is_tsv ? 1 : 1e-6), s.owner_busy_s / s.end_s * (is_tsv ? 1 : 100));
     sr_free(s.heap);
     sr_free(s.ranks);
-}
-
-/* ---- the log ---- */
-
-static bool read_log(const char *path, struct log *log)
-{
-    FILE *file = fopen(path, "r");
-    char line[512];
-    uint64_t units = 0, room = 0;
-    double bytes = 0, take_s = 0, sent = 0;
-    struct unit {
-        uint32_t tile, block;
-        double cost_s;
-    } *all = NULL;
-    while (file && fgets(line, sizeof line, file)) {
-        unsigned tile, block, rank;
-        double cost_s, messages;
-        if (line[0] == '#' && sscanf(line, "# renderers %*d threads %*u messages %lf bytes %lf take_s %lf", &messages, &bytes, &take_s) == 3)
-            continue;
-        if (sscanf(line, "%u\t%u\t%*u\t%*u\t%*u\t%*u\t%u\t%lf", &tile, &block, &rank, &cost_s) != 4)
-            continue;
-        if (units == room) {
-            uint64_t more = 2 * room + 1024;
-            all = sr_realloc(all, room * sizeof *all, more * sizeof *all);
-            room = more;
-            if (!all)
-                exit(SR_ERROR_RESOURCE);
-        }
-        all[units++] = (struct unit){tile, block, cost_s};
-        log->tiles = tile >= log->tiles ? tile + 1 : log->tiles;
-        log->blocks = block >= log->blocks ? block + 1 : log->blocks;
-        sent += rank > 0;
-    }
-    if (file)
-        fclose(file);
-    log->cost_s = units ? sr_alloc((size_t)log->tiles * log->blocks * sizeof *log->cost_s) : NULL;
-    for (uint64_t i = 0; log->cost_s && i < units; ++i)
-        log->cost_s[(size_t)all[i].tile * log->blocks + all[i].block] = all[i].cost_s;
-    sr_free(all);
-    log->unit_B = sent > 0 ? bytes / sent : 45000; // else that of 16 x 16 pixels with all channels
-    log->take_s = bytes > 0 ? take_s / bytes : 5e-10;
-    return log->cost_s != NULL;
 }
 
 int main(int argc, char **argv)
@@ -322,12 +295,12 @@ int main(int argc, char **argv)
             path = argv[i];
         }
     }
-    struct log log = {0};
+    struct recorded log;
     if (!path || m.threads < 1 || m.pixels < 1) {
         fputs(help, stderr);
         return SR_ERROR_USAGE;
     }
-    if (!read_log(path, &log)) {
+    if (!recorded_read(path, &log)) {
         fprintf(stderr, "simulate-ranks: %s: no units of a log are in it\n", path);
         return SR_ERROR_INPUT;
     }
@@ -338,6 +311,6 @@ int main(int argc, char **argv)
     for (const char *p = ranks; *p; p += strcspn(p, ","), p += *p == ',')
         if (atoi(p) > 0)
             simulate(&log, &m, (uint32_t)atoi(p), is_tsv);
-    sr_free(log.cost_s);
+    recorded_free(&log);
     return 0;
 }

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* steradian-mpi: the hooks that a render calls. They talk to the pump alone, through members that the lock guards. */
-#define _POSIX_C_SOURCE 200809L
+#define _GNU_SOURCE // dladdr
 #include "ranks.h"
 
 #include "render_command.h"
 
+#include <dlfcn.h>
 #include <math.h>
 #include <string.h>
 #include <time.h>
@@ -27,17 +28,26 @@ static bool is_lost(const struct crew *c)
     return c->is_over || c->failed_status;
 }
 
-/* The program's own bytes and what the render says of itself. */
-static char *identity_of_all(void)
+/* FNV-1a. */
+static uint64_t hash_file(const char *path, uint64_t hash)
 {
-    uint64_t hash = 0xcbf29ce484222325; // FNV-1a
-    FILE *program = fopen("/proc/self/exe", "rb");
+    FILE *file = fopen(path, "rb");
     static uint8_t bytes[1 << 16];
-    for (size_t n; program && (n = fread(bytes, 1, sizeof bytes, program)) > 0;)
+    for (size_t n; file && (n = fread(bytes, 1, sizeof bytes, file)) > 0;)
         for (size_t i = 0; i < n; ++i)
             hash = (hash ^ bytes[i]) * 0x100000001b3;
-    if (program)
-        fclose(program);
+    if (file)
+        fclose(file);
+    return hash;
+}
+
+/* The bytes of the program, and of the library where that renders; and what the render says of itself. */
+static char *identity_of_all(void)
+{
+    uint64_t hash = hash_file("/proc/self/exe", 0xcbf29ce484222325);
+    Dl_info program, library;
+    if (dladdr((void *)(uintptr_t)identity_of_all, &program) && dladdr((void *)(uintptr_t)sr_fail, &library) && library.dli_fbase != program.dli_fbase)
+        hash = hash_file(library.dli_fname, hash);
     size_t size = strlen(render_crew.identity) + 64;
     char *text = sr_alloc(size);
     if (text)
@@ -89,6 +99,7 @@ static sr_status begin(void *self, const struct sr_crew_pass *pass, struct sr_er
     c->passed = 0;
     c->has_share = c->is_exhausted = c->is_asked = c->is_ended = false;
     ++c->pass_number;
+    c->pass_start_s = sr_clock_s();
     c->pass = pass; // from here on the pump deals
     pthread_mutex_unlock(&c->lock);
     return status;
@@ -165,9 +176,7 @@ static void note(void *self, const struct sr_crew_unit *u)
     pthread_mutex_lock(&c->lock);
     c->pool.cost_s += u->cost_s;
     c->pool.done += u->block + 1 == c->pass->blocks;
-    if (c->unit_log)
-        fprintf(c->unit_log, "%u\t%u\t%u\t%u\t%u\t%u\t%d\t%.6f\t%.6f\n", u->tile, u->block, u->x0, u->y0, u->x1 - u->x0, u->y1 - u->y0,
-                crew_taking_from, u->cost_s, sr_clock_s() - c->start_s);
+    unit_log_note(c, u);
     pthread_mutex_unlock(&c->lock);
 }
 
@@ -203,6 +212,7 @@ static sr_status end(void *self, bool is_cancelled, struct sr_error *error)
     while (c->is_taking)
         pthread_cond_wait(&c->changed, &c->lock);
     c->pass = NULL; // the pump takes nothing any more
+    c->passes_s += sr_clock_s() - c->pass_start_s;
     sr_status status = is_lost(c) && !is_cancelled ? fail(c, error) : SR_OK;
     pthread_mutex_unlock(&c->lock);
     return status;

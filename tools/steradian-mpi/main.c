@@ -133,30 +133,6 @@ static void *render(void *p)
     return NULL;
 }
 
-static bool open_log(struct crew *c, const char *path)
-{
-    if (!path || c->hooks.is_helper)
-        return true;
-    c->unit_log = fopen(path, "w");
-    if (!c->unit_log) {
-        fprintf(stderr, "steradian-mpi: error: %s: cannot be written\n", path);
-        return false;
-    }
-    fprintf(c->unit_log, "tile\tblock\tx\ty\twidth\theight\trank\tcost_s\tend_s\n");
-    return true;
-}
-
-/* What the messages have cost, at the end of the log. */
-static void close_log(struct crew *c)
-{
-    if (!c->unit_log)
-        return;
-    fprintf(c->unit_log, "# renderers %d threads %u messages %llu bytes %llu take_s %.6f elapsed_s %.6f\n", c->place.renderers, c->pool.threads,
-            (unsigned long long)c->messages, (unsigned long long)c->message_B, c->took_s, sr_clock_s() - c->start_s);
-    if (fclose(c->unit_log) != 0)
-        fprintf(stderr, "warning: the unit log could not be written\n");
-}
-
 static void introduce(const struct place *p, bool is_quiet)
 {
     int waiting = p->ranks - p->renderers, most = 0;
@@ -191,7 +167,7 @@ static int render_with_others(int argc, char **argv, const struct options *o)
         introduce(&crew.place, o->quiet);
     render_crew = (struct render_crew){.hooks = &crew.hooks, .threads = own->threads, .processes = crew.place.renderers};
     task = (struct task){.argc = argc, .argv = argv, .crew = &crew};
-    if (!open_log(&crew, o->unit_log)) {
+    if (!unit_log_open(&crew, o->unit_log)) {
         task.ending.code = SR_ERROR_RESOURCE;
         task.ending.is_ended = true;
     } else {
@@ -201,7 +177,7 @@ static int render_with_others(int argc, char **argv, const struct options *o)
         pthread_detach(thread);
     }
     int code = pump(&crew, &task.ending);
-    close_log(&crew);
+    unit_log_close(&crew);
     return code;
 }
 

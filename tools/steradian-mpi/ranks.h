@@ -72,12 +72,20 @@ struct crew {
 
     FILE *unit_log;          // NULL: none
     double start_s, took_s;  // the owner: when the render met, time of its pump in taking
+    double pass_start_s, passes_s; // the owner: from a pass's beginning to its end, all of them
     uint64_t messages, message_B;
 };
 void crew_begin(struct crew *c);
 /* Whoever calls has the lock. Units that are dealt to this process and not begun. */
 uint64_t crew_waiting_units(const struct crew *c);
 extern _Thread_local int crew_taking_from; // the rank whose units are being taken
+
+/* ---- unit_log.c: what units have cost ---- */
+
+/* NULL, and for helpers: none. false: it cannot be written, which has been told. */
+bool unit_log_open(struct crew *c, const char *path);
+void unit_log_note(struct crew *c, const struct sr_crew_unit *u);
+void unit_log_close(struct crew *c);
 
 /* ---- pump.c: MPI's side ---- */
 
