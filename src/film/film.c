@@ -300,25 +300,55 @@ uint64_t sr_film_doubtful_pixels(const struct sr_film *film)
     return count;
 }
 
-enum { POOL = 2 }; // pixels to each side: 5 x 5
+/* Variances of five rows of a strip and its neighbours, for each channel; those that are not known are 0. */
+enum { POOL = 2, ROWS = 2 * POOL + 1, STRIP = 64, COLUMNS = STRIP + 2 * POOL }; // pools of 5 x 5 pixels
+struct variances {
+    double variance[ROWS][3][COLUMNS], is_known[ROWS][3][COLUMNS]; // row y is at y % ROWS
+};
 
-void sr_film_pixel_error(const struct sr_film *film, uint32_t x, uint32_t y, bool pooled, double standard_error[3])
+static void fill_variances(const struct sr_film *film, int64_t x0, int64_t y, int columns, struct variances *v)
 {
-    int reach = pooled ? POOL : 0;
+    for (int c = 0; c < 3; ++c)
+        for (int k = 0; k < columns; ++k) {
+            bool is_inside = x0 + k >= 0 && x0 + k < film->width && y >= 0 && y < film->height;
+            double variance = is_inside ? pixel_variance(film, (uint32_t)(x0 + k), (uint32_t)y, c) : NAN;
+            v->variance[(y + ROWS) % ROWS][c][k] = isfinite(variance) ? variance : 0;
+            v->is_known[(y + ROWS) % ROWS][c][k] = isfinite(variance);
+        }
+}
+
+/* The errors of a strip's row from it and `reach` neighbours to each side. */
+static void pool_row(const struct variances *v, int64_t y, int width, int reach, double *standard_error)
+{
     for (int c = 0; c < 3; ++c) {
-        double sum = 0, count = 0, own = pixel_variance(film, x, y, c);
-        for (int64_t j = (int64_t)y - reach; j <= (int64_t)y + reach; ++j)
-            for (int64_t i = (int64_t)x - reach; i <= (int64_t)x + reach; ++i) {
-                if (i < 0 || j < 0 || i >= film->width || j >= film->height)
-                    continue;
-                double v = pixel_variance(film, (uint32_t)i, (uint32_t)j, c);
-                if (isfinite(v)) {
-                    sum += v;
-                    count += 1;
+        double sum[STRIP] = {0}, count[STRIP] = {0};
+        const double *own = v->variance[y % ROWS][c] + reach;
+        for (int64_t j = y - reach; j <= y + reach; ++j)
+            for (int i = 0; i <= 2 * reach; ++i) {
+                const double *variance = v->variance[(j + ROWS) % ROWS][c] + i, *is_known = v->is_known[(j + ROWS) % ROWS][c] + i;
+                for (int k = 0; k < width; ++k) {
+                    sum[k] += variance[k];
+                    count[k] += is_known[k];
                 }
             }
         // the neighbours steady the estimate; a pixel that is seen to vary more than they do keeps its own
-        standard_error[c] = count > 0 ? sqrt(fmax(sum / count, isfinite(own) ? own : 0)) : NAN;
+        for (int k = 0; k < width; ++k)
+            standard_error[3 * k + c] = count[k] > 0 ? sqrt(fmax(sum[k] / count[k], own[k])) : NAN;
+    }
+}
+
+void sr_film_errors(const struct sr_film *film, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1, bool pooled, double *standard_error)
+{
+    int reach = pooled ? POOL : 0;
+    for (uint32_t x = x0; x < x1; x += STRIP) {
+        int width = x1 - x < STRIP ? (int)(x1 - x) : STRIP;
+        struct variances v;
+        int64_t next = (int64_t)y0 - reach;
+        for (int64_t y = y0; y < y1; ++y) {
+            for (; next <= y + reach; ++next)
+                fill_variances(film, (int64_t)x - reach, next, width + 2 * reach, &v);
+            pool_row(&v, y, width, reach, standard_error + 3 * ((size_t)(y - y0) * (x1 - x0) + (x - x0)));
+        }
     }
 }
 

@@ -154,10 +154,11 @@ double sr_film_splat_mean(const struct sr_film *film, size_t pixel, int channel)
 /* Variance of the mean of w . rgb over the pixels x0 <= x < x1, y0 <= y < y1, summed: paths splat neighbours together. */
 double sr_film_splat_variance(const struct sr_film *film, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1, const double w[3]);
 
-/* Mean of a pixel and the standard error of it. Ordinary images: the spread of the blocks, pooled over 5 x 5 pixels,
- * conservative; measurements (replicates): of the pixel's own blocks, Student with blocks - 1 degrees. */
 void sr_film_pixel_mean(const struct sr_film *film, uint32_t x, uint32_t y, double mean[3]);
-void sr_film_pixel_error(const struct sr_film *film, uint32_t x, uint32_t y, bool pooled, double standard_error[3]);
+/* The standard errors of the means of the pixels x0 <= x < x1, y0 <= y < y1, [y - y0][x - x0][3]. Ordinary images: the spread of the
+ * blocks, pooled over 5 x 5 pixels, conservative; measurements (replicates): of the pixel's own blocks, Student with blocks - 1
+ * degrees. */
+void sr_film_errors(const struct sr_film *film, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1, bool pooled, double *standard_error);
 /* Makes a the picture of two halves of independent blocks, (mean a + mean b) / 2 for each pixel whatever their numbers of samples,
  * with the error and the degrees of freedom of that mean. Where one of them has no samples the other one's mean stands. */
 void sr_film_join_halves(struct sr_film *a, const struct sr_film *b);

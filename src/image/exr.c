@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* OpenEXR through the OpenEXRCore C interface: read from memory and written to memory.
+/* OpenEXR through the OpenEXRCore C interface, read from memory.
  *
  * "OpenEXR File Layout" of the OpenEXR project. The data window becomes a plain image, with (x0, y0) its place in
- * the display window. Half and uint samples become floats (uint above 2^24 loses its last digits). Written: float32
- * scan lines, ZIP, one part, so that every bit of a float is kept. Limits: only the first part and level 0 are
- * read; deep data and subsampled channels are refused; names of channels beyond 63 bytes are cut. */
-#include "image/codec.h"
+ * the display window. Half and uint samples become floats (uint above 2^24 loses its last digits). Limits: only the
+ * first part and level 0 are read; deep data and subsampled channels are refused; names of channels beyond 63 bytes are
+ * cut. */
+#include "image/exr.h"
 
-#include <openexr.h>
 #include <limits.h>
 #include <stdio.h>
 #include <string.h>
@@ -17,26 +16,19 @@ static bool is_mine(const uint8_t *data, size_t size)
     return size >= 4 && memcmp(data, "\x76\x2f\x31\x01", 4) == 0;
 }
 
-struct job {
-    const struct sr_image_source *source;
-    struct sr_array *out;
-    char message[256]; // the library's first complaint
-    bool has_no_memory; // which the library may call by another name
-};
-
 /* Of this thread. The library may hold its lock while it complains, so that asking it for its user data could wait for ever. */
-static _Thread_local struct job *current_job;
+static _Thread_local struct sr_exr_job *current_job;
 
 static void on_error(exr_const_context_t context, exr_result_t code, const char *text)
 {
-    struct job *job = current_job;
+    struct sr_exr_job *job = current_job;
     (void)context;
     (void)code;
     if (job && !job->message[0])
         snprintf(job->message, sizeof job->message, "%s", text);
 }
 
-static void *allocate(size_t size)
+void *sr_exr_alloc(size_t size)
 {
     void *p = sr_alloc(size);
     if (!p && current_job)
@@ -47,7 +39,7 @@ static void *allocate(size_t size)
 static int64_t take(exr_const_context_t context, void *user, void *buffer, uint64_t size, uint64_t offset,
                     exr_stream_error_func_ptr_t complain)
 {
-    const struct sr_image_source *source = ((struct job *)user)->source;
+    const struct sr_image_source *source = ((struct sr_exr_job *)user)->source;
     (void)context;
     (void)complain;
     // the header is read in blocks that may end behind a small file: less is then told, and the library judges
@@ -60,30 +52,22 @@ static int64_t take(exr_const_context_t context, void *user, void *buffer, uint6
 static int64_t source_size(exr_const_context_t context, void *user)
 {
     (void)context;
-    return (int64_t)((struct job *)user)->source->size;
+    return (int64_t)((struct sr_exr_job *)user)->source->size;
 }
 
-static int64_t put(exr_const_context_t context, void *user, const void *buffer, uint64_t size, uint64_t offset,
-                   exr_stream_error_func_ptr_t complain)
+struct sr_exr_job *sr_exr_enter(struct sr_exr_job *job)
 {
-    struct sr_array *out = ((struct job *)user)->out;
-    if (offset > SIZE_MAX / 8 || size > SIZE_MAX / 8 || !sr_array_reserve(out, offset + size, 1)) {
-        ((struct job *)user)->has_no_memory = true;
-        complain(context, EXR_ERR_OUT_OF_MEMORY, "not enough memory");
-        return -1;
-    }
-    memcpy((uint8_t *)out->data + offset, buffer, size);
-    if (out->count < offset + size)
-        out->count = offset + size;
-    return (int64_t)size;
+    struct sr_exr_job *before = current_job;
+    current_job = job;
+    return before;
 }
 
-static exr_context_initializer_t initializer(struct job *job)
+exr_context_initializer_t sr_exr_begin(struct sr_exr_job *job)
 {
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     current_job = job;
     init.error_handler_fn = on_error;
-    init.alloc_fn = allocate;
+    init.alloc_fn = sr_exr_alloc;
     init.free_fn = sr_free;
     init.user_data = job;
     init.flags = EXR_CONTEXT_FLAG_SILENT_HEADER_PARSE;
@@ -269,7 +253,7 @@ static const char *refusal(exr_storage_t storage, const exr_attr_chlist_t *list,
     return width * (uint64_t)list->num_channels * 4 > INT32_MAX ? "has rows of more than 2 GiB" : NULL;
 }
 
-static sr_status fail(const struct job *job, struct sr_error *error, const char *what, exr_result_t result)
+static sr_status fail(const struct sr_exr_job *job, struct sr_error *error, const char *what, exr_result_t result)
 {
     if (job->has_no_memory)
         return sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory to read it", job->source->label);
@@ -277,7 +261,7 @@ static sr_status fail(const struct job *job, struct sr_error *error, const char 
                    job->message[0] ? job->message : exr_get_default_error_message(result));
 }
 
-static sr_status read_part(exr_context_t exr, struct job *job, struct sr_image **image, struct sr_error *error)
+static sr_status read_part(exr_context_t exr, struct sr_exr_job *job, struct sr_image **image, struct sr_error *error)
 {
     const char *label = job->source->label;
     exr_storage_t storage;
@@ -333,8 +317,8 @@ static sr_status read_part(exr_context_t exr, struct job *job, struct sr_image *
 
 static sr_status decode(const struct sr_image_source *source, struct sr_image **image, struct sr_error *error)
 {
-    struct job job = {.source = source};
-    exr_context_initializer_t init = initializer(&job);
+    struct sr_exr_job job = {.source = source};
+    exr_context_initializer_t init = sr_exr_begin(&job);
     init.read_fn = take;
     init.size_fn = source_size;
     exr_context_t exr = NULL;
@@ -353,122 +337,4 @@ static sr_status decode(const struct sr_image_source *source, struct sr_image **
     return status;
 }
 
-/* ---- writing ---- */
-
-static exr_result_t write_header(exr_context_t exr, const struct sr_image *image)
-{
-    int part = 0;
-    exr_attr_v2f_t centre = {.x = 0, .y = 0};
-    exr_attr_box2i_t display = {.min = {.x = 0, .y = 0},
-                                .max = {.x = (int32_t)image->full_width - 1, .y = (int32_t)image->full_height - 1}};
-    exr_attr_box2i_t data = {
-        .min = {.x = image->x0, .y = image->y0},
-        .max = {.x = image->x0 + (int32_t)image->width - 1, .y = image->y0 + (int32_t)image->height - 1}};
-    exr_result_t result = exr_set_longname_support(exr, 1);
-    if (result == EXR_ERR_SUCCESS)
-        result = exr_add_part(exr, "image", EXR_STORAGE_SCANLINE, &part);
-    if (result == EXR_ERR_SUCCESS)
-        result = exr_initialize_required_attr(exr, part, &display, &data, 1, &centre, 1, EXR_LINEORDER_INCREASING_Y,
-                                              EXR_COMPRESSION_ZIP);
-    for (uint32_t c = 0; c < image->channel_count && result == EXR_ERR_SUCCESS; c++) {
-        char key[80];
-        snprintf(key, sizeof key, "unit.%s", image->channels[c].name);
-        result =
-            exr_add_channel(exr, part, image->channels[c].name, EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
-        if (result == EXR_ERR_SUCCESS && image->channels[c].unit[0])
-            result = exr_attr_set_string(exr, part, key, image->channels[c].unit);
-    }
-    if (result == EXR_ERR_SUCCESS && image->has_chromaticities) {
-        const double(*k)[2] = image->chromaticities;
-        exr_attr_chromaticities_t chromaticities = {(float)k[0][0], (float)k[0][1], (float)k[1][0], (float)k[1][1],
-                                                    (float)k[2][0], (float)k[2][1], (float)k[3][0], (float)k[3][1]};
-        result = exr_attr_set_chromaticities(exr, part, "chromaticities", &chromaticities);
-    }
-    for (uint32_t i = 0; i < image->attribute_count && result == EXR_ERR_SUCCESS; i++)
-        if (strcmp(image->attributes[i].name, "name") != 0)
-            result = exr_attr_set_string(exr, part, image->attributes[i].name, image->attributes[i].text);
-    return result == EXR_ERR_SUCCESS ? exr_write_header(exr) : result;
-}
-
-static exr_result_t write_lines(exr_context_t exr, const struct sr_image *image, const float *floats)
-{
-    int32_t lines = 0;
-    exr_encode_pipeline_t pipeline = EXR_ENCODE_PIPELINE_INITIALIZER;
-    bool is_started = false;
-    exr_result_t result = exr_get_scanlines_per_chunk(exr, 0, &lines);
-    for (uint32_t y = 0; y < image->height && result == EXR_ERR_SUCCESS; y += (uint32_t)lines) {
-        exr_chunk_info_t info;
-        result = exr_write_scanline_chunk_info(exr, 0, image->y0 + (int32_t)y, &info);
-        if (result == EXR_ERR_SUCCESS)
-            result = is_started ? exr_encoding_update(exr, 0, &info, &pipeline)
-                                : exr_encoding_initialize(exr, 0, &info, &pipeline);
-        for (int16_t c = 0; c < pipeline.channel_count && result == EXR_ERR_SUCCESS; c++) {
-            exr_coding_channel_info_t *channel = &pipeline.channels[c];
-            int place = sr_image_find_channel(image, channel->channel_name);
-            if (place < 0)
-                result = EXR_ERR_INVALID_ARGUMENT;
-            channel->encode_from_ptr =
-                (const uint8_t *)(floats + sr_image_index(image, 0, y) + (place < 0 ? 0 : place));
-            channel->user_data_type = EXR_PIXEL_FLOAT;
-            channel->user_bytes_per_element = 4;
-            channel->user_pixel_stride = (int32_t)(image->channel_count * 4);
-            channel->user_line_stride = (int32_t)(image->channel_count * 4 * image->width);
-        }
-        if (result == EXR_ERR_SUCCESS && !is_started)
-            result = exr_encoding_choose_default_routines(exr, 0, &pipeline);
-        is_started = true;
-        if (result == EXR_ERR_SUCCESS)
-            result = exr_encoding_run(exr, 0, &pipeline);
-    }
-    if (is_started)
-        exr_encoding_destroy(exr, &pipeline);
-    return result;
-}
-
-static float *decoded(const struct sr_image *image)
-{
-    size_t pixels = (size_t)image->width * image->height;
-    float *floats = sr_alloc(pixels * image->channel_count * sizeof(float));
-    for (size_t p = 0; floats && p < pixels; p++)
-        for (uint32_t c = 0; c < image->channel_count; c++)
-            floats[p * image->channel_count + c] = sr_image_value(image, p * image->channel_count + c, c);
-    return floats;
-}
-
-static sr_status encode(const struct sr_image *image, const struct sr_image_write_options *options,
-                        struct sr_array *out, struct sr_error *error)
-{
-    (void)options;
-    if ((uint64_t)image->width * image->channel_count * 4 > INT32_MAX || image->channel_count > INT16_MAX)
-        return sr_fail(error, SR_ERROR_USAGE, "an EXR file takes rows of 2 GiB and 32767 channels at most");
-    for (uint32_t c = 0; c < image->channel_count; c++)
-        if (!image->channels[c].name[0] || sr_image_find_channel(image, image->channels[c].name) != (int)c)
-            return sr_fail(error, SR_ERROR_USAGE, "an EXR file needs channel names that differ, channel %u is '%s'", c,
-                           image->channels[c].name);
-    float *floats = image->floats ? image->floats : decoded(image);
-    if (!floats)
-        return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory to write an EXR file");
-    struct job job = {.out = out};
-    exr_context_initializer_t init = initializer(&job);
-    init.write_fn = put;
-    init.zip_level = 2; // the noise of renderings shrinks no further at higher levels
-    exr_context_t exr = NULL;
-    exr_result_t result = exr_start_write(&exr, "image.exr", EXR_WRITE_FILE_DIRECTLY, &init);
-    if (result == EXR_ERR_SUCCESS)
-        result = write_header(exr, image);
-    if (result == EXR_ERR_SUCCESS)
-        result = write_lines(exr, image, floats);
-    if (exr) {
-        exr_result_t finished = exr_finish(&exr);
-        result = result == EXR_ERR_SUCCESS ? finished : result;
-    }
-    current_job = NULL;
-    if (floats != image->floats)
-        sr_free(floats);
-    if (result == EXR_ERR_SUCCESS)
-        return SR_OK;
-    return sr_fail(error, job.has_no_memory || result == EXR_ERR_OUT_OF_MEMORY ? SR_ERROR_RESOURCE : SR_ERROR_USAGE,
-                   "the EXR library says: %s", job.message[0] ? job.message : exr_get_default_error_message(result));
-}
-
-const struct sr_image_codec sr_image_codec_exr = {"EXR", {".exr"}, is_mine, decode, encode};
+const struct sr_image_codec sr_image_codec_exr = {"EXR", {".exr"}, is_mine, decode, sr_exr_encode};

@@ -103,30 +103,43 @@ struct filling {
     bool with_error, is_replicated;
 };
 
-static void fill_row(void *context, uint64_t row)
+static void fill_pixel(const struct filling *f, uint32_t x, uint32_t y, const double se[3])
+{
+    const struct sr_film *film = f->film;
+    float *p = f->out->floats + sr_image_index(f->out, x, y);
+    double mean[3];
+    sr_film_pixel_mean(film, x, y, mean);
+    for (int c = 0; c < 3; ++c)
+        *p++ = (float)mean[c];
+    size_t i = (size_t)y * film->width + x;
+    if (f->with_error) {
+        for (int c = 0; c < 3; ++c)
+            *p++ = (float)se[c];
+        *p++ = (float)film->pixels[i].n;
+    }
+    if (film->has_aov)
+        p = put_auxiliary(p, &film->aov[i]);
+    if (film->has_aov && film->settings.is_gbuffer)
+        p = put_gbuffer(p, &film->aov[i]);
+    for (uint32_t k = 0; k < film->settings.buckets; ++k)
+        *p++ = (float)sr_film_bucket(film, x, y, k);
+}
+
+enum { BAND = 16, STRIP = 64 };
+
+static void fill_band(void *context, uint64_t band)
 {
     const struct filling *f = context;
     const struct sr_film *film = f->film;
-    uint32_t y = (uint32_t)row, buckets = film->settings.buckets;
-    for (uint32_t x = 0; x < film->width; ++x) {
-        float *p = f->out->floats + sr_image_index(f->out, x, y);
-        double mean[3], se[3];
-        sr_film_pixel_mean(film, x, y, mean);
-        for (int c = 0; c < 3; ++c)
-            *p++ = (float)mean[c];
-        size_t i = (size_t)y * film->width + x;
-        if (f->with_error) {
-            sr_film_pixel_error(film, x, y, !f->is_replicated, se);
-            for (int c = 0; c < 3; ++c)
-                *p++ = (float)se[c];
-            *p++ = (float)film->pixels[i].n;
-        }
-        if (film->has_aov)
-            p = put_auxiliary(p, &film->aov[i]);
-        if (film->has_aov && film->settings.is_gbuffer)
-            p = put_gbuffer(p, &film->aov[i]);
-        for (uint32_t k = 0; k < buckets; ++k)
-            *p++ = (float)sr_film_bucket(film, x, y, k);
+    uint32_t y0 = (uint32_t)band * BAND, y1 = film->height - y0 < BAND ? film->height : y0 + BAND;
+    for (uint32_t x0 = 0; x0 < film->width; x0 += STRIP) {
+        double se[BAND * STRIP][3] = {{0}};
+        uint32_t x1 = film->width - x0 < STRIP ? film->width : x0 + STRIP;
+        if (f->with_error)
+            sr_film_errors(film, x0, y0, x1, y1, !f->is_replicated, se[0]);
+        for (uint32_t y = y0; y < y1; ++y)
+            for (uint32_t x = x0; x < x1; ++x)
+                fill_pixel(f, x, y, se[(y - y0) * (x1 - x0) + x - x0]);
     }
 }
 
@@ -167,6 +180,6 @@ sr_status sr_render_image(const struct sr_film *film, bool with_error, bool is_r
             out->chromaticities[i][k] = space->xy[i][k];
 
     struct filling filling = {.film = film, .out = out, .with_error = with_error, .is_replicated = is_replicated};
-    sr_parallel_for(sr_thread_count(), film->height, fill_row, &filling);
+    sr_parallel_for(sr_thread_count(), (film->height + BAND - 1) / BAND, fill_band, &filling);
     return SR_OK;
 }

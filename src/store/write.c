@@ -129,6 +129,19 @@ static bool put_padded(struct sr_store_out *out, const void *data, size_t size)
     return write_all(out->fd, data, size) && write_all(out->fd, zeros, store_gap(size));
 }
 
+struct summing {
+    uint32_t section, *crc;
+    const char *data;
+    size_t size;
+};
+
+static void sum_block(void *context, uint64_t block)
+{
+    const struct summing *s = context;
+    size_t at = (size_t)block * SR_STORE_BLOCK, n = s->size - at < SR_STORE_BLOCK ? s->size - at : SR_STORE_BLOCK;
+    s->crc[block] = sr_store_crc_block(s->section, block, s->data + at, n);
+}
+
 sr_status sr_store_put(struct sr_store_out *out, const char *name, const void *data, size_t size, struct sr_error *error)
 {
     struct store_section section = {.size = size, .number = out->header.sections};
@@ -140,10 +153,7 @@ sr_status sr_store_put(struct sr_store_out *out, const char *name, const void *d
     uint32_t *crc = sr_alloc((blocks + 1) * sizeof *crc);
     if (!crc)
         return sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory to write it", out->path);
-    for (size_t b = 0; b < blocks; ++b) {
-        size_t at = b * SR_STORE_BLOCK, n = size - at < SR_STORE_BLOCK ? size - at : SR_STORE_BLOCK;
-        crc[b] = sr_store_crc_block(section.number, b, (const char *)data + at, n);
-    }
+    sr_parallel_for(blocks < 64 ? 1 : sr_thread_count(), blocks, sum_block, &(struct summing){section.number, crc, data, size});
     bool ok = put_padded(out, &section, sizeof section) && put_padded(out, data, size) && put_padded(out, crc, blocks * sizeof *crc);
     sr_status status = ok ? SR_OK : fail_errno(out, "written", error);
     sr_free(crc);

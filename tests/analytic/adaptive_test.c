@@ -180,7 +180,7 @@ TEST(intervals_of_shared_out_samples_cover)
             double mean[3], truth[3], se[3];
             sr_film_pixel_mean(film, i % SIDE, i / SIDE, mean);
             sr_film_pixel_mean(reference, i % SIDE, i / SIDE, truth);
-            sr_film_pixel_error(film, i % SIDE, i / SIDE, false, se);
+            sr_film_errors(film, i % SIDE, i / SIDE, i % SIDE + 1, i / SIDE + 1, false, se);
             covered += fabs(mean[1] - truth[1]) <= k * se[1];
             all += 1;
         }

@@ -33,7 +33,7 @@ static struct trials render_many(struct sr_render_job job, uint32_t seeds, uint3
         for (uint32_t i = 0; i < t.pixels; ++i) {
             double mean[3], se[3];
             sr_film_pixel_mean(film, i % film->width, i / film->width, mean);
-            sr_film_pixel_error(film, i % film->width, i / film->width, replicates == 0, se);
+            sr_film_errors(film, i % film->width, i / film->width, i % film->width + 1, i / film->width + 1, replicates == 0, se);
             t.mean[(size_t)s * t.pixels + i] = mean[1];
             t.error[(size_t)s * t.pixels + i] = se[1];
         }

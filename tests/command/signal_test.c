@@ -41,7 +41,9 @@ static void expect_partial(const char *name)
     EXPECT_EQUAL_INT(image->width, 256);
     EXPECT_EQUAL_TEXT(sr_image_get_attribute(image, "steradian.complete"), "no");
     sr_image_free(image);
-    EXPECT_EQUAL_INT(count_files(".part-"), 0);
+    char beside[64];
+    snprintf(beside, sizeof beside, "%s.part-", name);
+    EXPECT_EQUAL_INT(count_files(beside), 0);
 }
 
 /* Minutes of work in units of milliseconds: its first partial picture tells that it runs. */
@@ -71,6 +73,23 @@ TEST(signal_interrupt_writes_what_there_is)
 TEST(signal_terminate_writes_what_there_is)
 {
     expect_interrupted(SIGTERM, 143);
+}
+
+TEST(signal_a_second_one_ends_at_once)
+{
+    remove_file("twice.exr");
+    pid_t pid = start(STEADY "twice.exr");
+    send_when_there(pid, SIGSTOP, "twice.exr");
+    kill(pid, SIGINT);
+    kill(pid, SIGTERM);
+    kill(pid, SIGCONT); // they come together, in either order
+    const struct said *s = finish(pid);
+    EXPECT(s->code == 130 || s->code == 143);
+    EXPECT(!strstr(s->err, "what there was"));
+    char beside[64];
+    snprintf(beside, sizeof beside, "twice.exr.part-%d", (int)pid);
+    remove_file(beside);
+    remove_file("twice.exr.srk");
 }
 
 TEST(signal_interrupt_is_told_in_the_json)

@@ -58,7 +58,7 @@ static sr_status luminances(const struct sr_render_job *job, double *Y, double *
         sr_film_pixel_mean(film, i % film->width, i / film->width, mean);
         Y[i] = y_of_rgb[0] * mean[0] + y_of_rgb[1] * mean[1] + y_of_rgb[2] * mean[2];
         if (variance) { // channels go together: at most the square of the sum
-            sr_film_pixel_error(film, i % film->width, i / film->width, false, u);
+            sr_film_errors(film, i % film->width, i / film->width, i % film->width + 1, i / film->width + 1, false, u);
             variance[i] = pow(y_of_rgb[0] * u[0] + y_of_rgb[1] * u[1] + y_of_rgb[2] * u[2], 2);
         }
     }
