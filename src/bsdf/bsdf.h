@@ -30,7 +30,7 @@ struct sr_bsdf_sample {
     bool pdf_is_proportional; // f and pdf share an unknown factor (random walks): use pdf() for weighing
 };
 
-#define SR_BSDF_SIZE (32 * sizeof(float) + 12 * sizeof(sr_spectrum)) // [B] of the largest model's data: 512 for 8 wavelengths
+#define SR_BSDF_SIZE (48 * sizeof(float) + 10 * sizeof(sr_spectrum)) // [B] of the largest model's data: 512 for 8 wavelengths
 
 /* What a model may want to know of the path, besides its parameters. */
 struct sr_bsdf_at {

@@ -106,6 +106,7 @@ char *sr_render_identity(struct sr_arena *arena, const struct sr_render_job *job
     if (job->filter.model)
         add_params(&t, "filter", job->filter.model->params, job->filter.self);
     add_line(&t, "sampler %d", (int)job->sampler);
+    add_line(&t, "wavelengths %d", SR_LAMBDA_COUNT);
     add_line(&t, "lambda %.9g %.9g nm", (double)job->lambda.lo, (double)job->lambda.hi);
     add_line(&t, "jitter.pixel %s", job->jitter_pixel ? "yes" : "no");
     add_line(&t, "jitter.lambda %s", job->jitter_lambda ? "yes" : "no");

@@ -23,7 +23,7 @@ def run(command, hidden, *words):
 def main(command, scene, folder):
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    best = run(command, "", "--version").split("(")[1].strip(")\n")
+    best = run(command, "", "--version").split("(")[1].split(")")[0]
     levels = [level for level in HIDDEN if level <= best]
     pictures = {}
     for number, level in enumerate(levels):

@@ -21,6 +21,10 @@ static inline sr_vec3 brdf_vec3(const double d[3])
 {
     return (sr_vec3){(float)d[0], (float)d[1], (float)d[2]};
 }
+/* SR_LAMBDA_COUNT as text. */
+#define BRDF_TEXT_OF(x) #x
+#define BRDF_TEXT(x) BRDF_TEXT_OF(x)
+#define BRDF_MOST_LAMBDAS BRDF_TEXT(SR_LAMBDA_COUNT)
 /* Wavelengths [nm] to ask for: --lambda of one or more numbers "550" or "400,500,600"; at most SR_LAMBDA_COUNT. */
 struct brdf_lambda {
     sr_spectrum lambda; // [nm] the last one repeated in what is left

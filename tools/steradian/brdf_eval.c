@@ -15,7 +15,7 @@ static const char help[] =
     "\n"
     "      --wi THETA[,PHI]   toward the light [deg]\n"
     "      --wo THETA[,PHI]   toward the viewer [deg]\n"
-    "      --lambda NM[,NM …] wavelengths [nm], up to 8 (550)\n"
+    "      --lambda NM[,NM …] wavelengths [nm], up to " BRDF_MOST_LAMBDAS " (550)\n"
     "      --importance       the form for light paths, without the factor eta^2 of radiance in another medium\n"
     "      --seed N           of models whose f is a random estimate (1)\n"
     "      --json             the same as JSON on standard output\n"

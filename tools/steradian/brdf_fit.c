@@ -15,7 +15,7 @@ static const char help[] =
     "\n"
     "      --model WORDS        the model to fit; needed\n"
     "      --fix NAME[,NAME …]  parameters that stay as given\n"
-    "      --lambda NM[,NM …]   wavelengths [nm], up to 8 (450,550,650): spectra get a value at each, the rest is "
+    "      --lambda NM[,NM …]   wavelengths [nm], up to " BRDF_MOST_LAMBDAS " (450,550,650): spectra get a value at each, the rest is "
     "shared\n"
     "      --metric WORD        cube-root (weighs bright and dark as eyes do), log (relative) or linear (cube-root)\n"
     "      --points N           pairs of directions (4000)\n"

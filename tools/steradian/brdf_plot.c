@@ -27,7 +27,7 @@ static const char help[] =
     "                           all       each of these\n"
     "      --wi THETA[,PHI]   toward the light [deg] (45,180)\n"
     "      --theta-d DEG      difference angle of the kind half [deg] (30)\n"
-    "      --lambda NM[,NM …] wavelengths [nm], up to 8 (550)\n"
+    "      --lambda NM[,NM …] wavelengths [nm], up to " BRDF_MOST_LAMBDAS " (550)\n"
     "      --colour           as the eye sees it under D65: luminous f, colours of bodies and slices\n"
     "      --log              f on logarithmic axes; bodies with the logarithm for a radius\n"
     "      --cosine           f cos theta_o in place of f\n"

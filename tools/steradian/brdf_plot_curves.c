@@ -349,7 +349,7 @@ static void albedo_at(const struct plot_request *r, uint32_t specimen, sr_vec3 w
     uint32_t draws = plot_is_random(r, specimen) ? 16384 : 4096;
     if (!r->is_colour) {
         struct sr_specimen_albedo a = sr_specimen_albedo(&r->specimens[specimen], r->lambda.lambda, w, draws);
-        for (uint32_t k = 0; k < plot_columns(r); ++k) {
+        for (uint32_t k = 0; k < plot_columns(r) && k < SR_LAMBDA_COUNT; ++k) {
             reflected[k * stride] = (double)a.reflected[k];
             transmitted[k * stride] = (double)a.transmitted[k];
         }

@@ -22,7 +22,7 @@ static const char help[] =
     "      --geometry NAME     of an instrument: 8/di (8 degrees to hemisphere, as an integrating sphere with its "
     "gloss trap\n"
     "                          closed), di/8, 45/0, 0/45, 0/di\n"
-    "      --lambda NM[,NM …]  wavelengths [nm], up to 8 (550)\n"
+    "      --lambda NM[,NM …]  wavelengths [nm], up to " BRDF_MOST_LAMBDAS " (550)\n"
     "      --xyz ILLUMINANT    all wavelengths instead: luminous reflectance and XYZ under D65, A or any named "
     "spectrum\n"
     "      --tolerance X       relative, of the cubature (1e-8; 1e-5 with --xyz)\n"

@@ -33,7 +33,7 @@ int main(int argc, char **argv)
         return argc > 1 ? 0 : SR_ERROR_USAGE;
     }
     if (strcmp(name, "--version") == 0 || strcmp(name, "-V") == 0) {
-        printf("steradian %s (%s)\n", SR_VERSION, sr_isa());
+        printf("steradian %s (%s), %d wavelengths a path\n", SR_VERSION, sr_isa(), SR_LAMBDA_COUNT);
         return 0;
     }
     for (int i = 0; i < COMMANDS; ++i)

@@ -36,11 +36,16 @@ struct print {
     int count;
 };
 
-static void put(struct print *p, sr_spectrum s)
+static void put3(struct print *p, float x, float y, float z)
 {
     EXPECT(p->count + 3 <= NUMBERS);
-    for (int i = 0; i < 3; ++i)
-        p->x[p->count++] = s[3 * i];
+    p->x[p->count++] = x;
+    p->x[p->count++] = y;
+    p->x[p->count++] = z;
+}
+static void put(struct print *p, sr_spectrum s)
+{
+    put3(p, s[0], s[SR_LAMBDA_COUNT / 2 - 1], s[SR_LAMBDA_COUNT - 2]);
 }
 
 static struct print print_of(const char *material, const char *parameter)
@@ -67,7 +72,7 @@ static struct print print_of(const char *material, const char *parameter)
     struct sr_bssrdf body;
     sr_vec3 wo = sr_normalize((sr_vec3){0.5f, 0.2f, 0.6f});
     sr_material_shade(hit.material, &hit.point, wo, 0.4f, 99, &w, &bsdf, &frame);
-    put(&print, (sr_spectrum){frame.z.x, 0, 0, frame.z.y, 0, 0, frame.z.z, 0});
+    put3(&print, frame.z.x, frame.z.y, frame.z.z);
     put(&print, w.pdf);
     if (sr_material_bssrdf(hit.material, &hit.point, wo, 0.4f, 99, &w, &body)) {
         put(&print, body.albedo);
@@ -82,7 +87,7 @@ static struct print print_of(const char *material, const char *parameter)
         put(&print, sr_bsdf_f(&bsdf, wo, wi, SR_RADIANCE));
         if (sr_bsdf_sample(&bsdf, wo, turns[i], (sr_vec2){0.3f, 0.8f}, SR_RADIANCE, &s)) {
             put(&print, s.f * (sr_abs_cos_theta(s.wi) / s.pdf));
-            put(&print, (sr_spectrum){s.wi.x, 0, 0, s.wi.y, 0, 0, s.wi.z, 0});
+            put3(&print, s.wi.x, s.wi.y, s.wi.z);
             put(&print, SR_BLACK + s.pdf);
         }
     }

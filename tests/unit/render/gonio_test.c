@@ -33,7 +33,7 @@ static struct sr_gonio_beam beam(double half, double theta_deg, double phi_deg, 
     struct sr_gonio_beam b = {.x0 = -half, .x1 = half, .y0 = -half, .y1 = half, .theta_i = (float)(theta_deg * PI / 180), .phi_i = (float)(phi_deg * PI / 180),
                               .theta_count = thetas, .phi_count = phis};
     for (int i = 0; i < SR_LAMBDA_COUNT; ++i)
-        b.lambda[i] = 400 + 40 * (float)i;
+        b.lambda[i] = 400 + 320.0f / SR_LAMBDA_COUNT * (float)i;
     return b;
 }
 
