@@ -59,7 +59,7 @@ validate: all
 mutants: packages
 	python3 tests/mutants/mutants.py . build-mutants
 
-# 10^9 rays from inside of closed meshes and 10^9 that leave surfaces: an hour of one processor
+# 10^9 rays from inside of closed meshes, 10^9 that leave surfaces and 10^9 that leave floors: an hour of one processor
 soak-rays: all
 	$(BUILD)/sr_soak
 

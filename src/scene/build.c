@@ -253,12 +253,10 @@ static void attach(RTCScene embree, RTCGeometry g, uint32_t number)
     rtcReleaseGeometry(g);
 }
 
-/* Triangles by pairs, if there are many and most have a partner. Lamps keep theirs in order, as lights are numbered by it.
- * Small meshes stay as they are: floors and walls whose triangles are large, which the ray caster meets less exactly by pairs,
- * so that a ray that leaves one might meet it. */
+/* Triangles by pairs, if there are many and most have a partner. Lamps keep theirs in order, as lights are numbered by it. */
 static void pair_triangles(struct sr_scene *scene, struct object *object)
 {
-    const uint64_t many = 4096, few = 256;
+    const uint64_t many = 4096;
     uint64_t triangles = 0, pairs = 0;
     for (uint32_t i = 0; i < object->shape_count; ++i) {
         const struct placed_shape *s = &object->shapes[i];
@@ -270,7 +268,7 @@ static void pair_triangles(struct sr_scene *scene, struct object *object)
         return;
     for (uint32_t i = 0; i < object->shape_count; ++i) {
         struct placed_shape *s = &object->shapes[i];
-        if (!s->is_mesh || s->shape.model->primitive_count(s->shape.self) < few)
+        if (!s->is_mesh)
             continue;
         if (s->first_light == SR_NO_LIGHT)
             sr_shape_pair_triangles((struct sr_shape_mesh *)(uintptr_t)s->shape.self, &scene->arena, &scene->error); // before it is shared

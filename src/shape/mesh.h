@@ -19,6 +19,9 @@ struct sr_mesh_arrays {
 sr_status sr_mesh_place(const struct sr_mesh_arrays *m, const struct sr_shape_placement *placement, bool *flip_normals,
                         struct sr_arena *arena, struct sr_error *error);
 
+/* Fills the planes of a small mesh of triangles. */
+void sr_mesh_keep_planes(struct sr_shape_mesh *m, struct sr_arena *arena);
+
 /* pdf [1/sr] at `from` = pdf_area [1/m^2] r^2 / |cos theta|; 0 where the surface is seen edge on or from itself. Without
  * n's sign: both sides count, the light decides which of them shines. */
 static inline float sr_density_seen_from(sr_vec3 from, sr_vec3 p, sr_vec3 n, float pdf_area)

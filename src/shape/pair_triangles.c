@@ -3,7 +3,7 @@
  *
  * Modellers cut quads into triangles that follow each other, so most triangles have such a neighbour, and looking no further
  * costs one pass and no memory. What the first corner of a triangle was matters only where there is no uv: then it is kept. */
-#include "shape/shape.h"
+#include "shape/mesh.h"
 
 #include <string.h>
 
@@ -89,7 +89,7 @@ sr_status sr_shape_pair_triangles(struct sr_shape_mesh *m, struct sr_arena *aren
     }
     sr_free(rest);
     m->pairs = pairs;
-    m->normals = NULL; // of another order
+    sr_mesh_keep_planes(m, arena); // in the new order
     if (turns)
         keep_turns(m, turns, n);
     return SR_OK;

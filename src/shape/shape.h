@@ -94,7 +94,10 @@ struct sr_shape_mesh {
     struct sr_slice face_indices; // int32, one a triangle, or empty
     bool flip_normals;            // derived: outside is on the other side of the winding
     uint32_t left_out;            // derived: triangles with numbers that are not finite
-    const sr_vec3 *normals;       // derived: NULL, or of each triangle, by the winding [1]: small meshes keep them
+    const struct sr_shape_plane { // derived: NULL, or of each triangle: small meshes keep them
+        sr_vec3 n;                // [1] by the winding
+        float error;              // [m] along n: how far from where it is a ray caster may find it
+    } *planes;
     uint32_t pairs;               // derived: the first 2 pairs triangles are pairs, as sr_shape_pair_triangles leaves them
     const uint8_t *turns;         // derived: NULL, or of triangle i turns[i & turn_mask]: the place at which its first corner stands
     uint32_t turn_mask;

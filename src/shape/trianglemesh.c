@@ -4,6 +4,9 @@
  *     n  = (p1 - p0) x (p2 - p0) / |...|             the winding is counterclockwise seen from outside, turned if flipped;
  *                                                    where there are N, on the side of the interpolated N instead
  *     |error of p| <= gamma(7) SUM |b_i p_i|         [m]
+ *     + 32 u w_x w_y w_z / |(p1 - p0) x (p2 - p0)|   [m] along n: how far from its plane a ray caster may find itself that computes
+ *                                                    in floats; w: the box's size, u = 2^-24
+ *                                                    (docs/decisions/0024-leaving-triangles.md)
  *     du12 dpdu + dv12 dpdv = p1 - p2, and so on     solved for dpdu, dpdv [m]
  *
  * Sampled toward a point: uniformly in the solid angle Omega (J. Arvo 1995), times the bilinear weight of the receiver's
@@ -64,23 +67,63 @@ static inline quad cross(quad a, quad b)
     return difference + error;
 }
 
-/* By the winding; of triangles without area (0,0,1). */
-static inline sr_vec3 winding_normal(quad v0, quad v1, quad v2)
+/* The extent of the triangle's box. */
+static inline quad box_size(quad v0, quad v1, quad v2)
 {
-    return sr_unit_normal(three(cross(v0 - v2, v1 - v2)));
+    quad lo, hi;
+    for (int i = 0; i < 4; ++i) {
+        lo[i] = v0[i] < v1[i] ? v0[i] : v1[i];
+        hi[i] = v0[i] > v1[i] ? v0[i] : v1[i];
+    }
+    for (int i = 0; i < 4; ++i) {
+        lo[i] = lo[i] < v2[i] ? lo[i] : v2[i];
+        hi[i] = hi[i] > v2[i] ? hi[i] : v2[i];
+    }
+    return hi - lo;
+}
+
+/* Needles, whose normal is known no better than that, do not leave more than 2^-10 of their size between them and a ray. */
+static inline float plane_error(float of_normal, quad w)
+{
+    return sr_min(32 * SR_MACHINE_EPSILON * of_normal, 0x1p-10f * (w[0] + w[1] + w[2]));
+}
+
+/* Where squares of areas are too small or too large for floats. */
+static struct sr_shape_plane extreme_plane(sr_vec3 c, quad w)
+{
+    double l = sqrt((double)c.x * (double)c.x + (double)c.y * (double)c.y + (double)c.z * (double)c.z);
+    float of_normal = l > 0 ? (float)((double)w[0] * (double)w[1] * (double)w[2] / l) : 0;
+    return (struct sr_shape_plane){sr_unit_normal(c), plane_error(of_normal, w)};
+}
+
+/* By the winding; of triangles without area (0,0,1). */
+static inline struct sr_shape_plane plane_of(quad v0, quad v1, quad v2)
+{
+    sr_vec3 c = three(cross(v0 - v2, v1 - v2));
+    quad w = box_size(v0, v1, v2);
+    float l2 = sr_dot(c, c);
+    if (SR_UNLIKELY(!(l2 > 1e-30f && l2 < 1e30f)))
+        return extreme_plane(c, w);
+    float inverse = 1 / sqrtf(l2);
+    return (struct sr_shape_plane){sr_scale(inverse, c), plane_error(inverse * w[0] * w[1] * w[2], w)};
 }
 
 /* What each hit would take a root and a quotient to find. Large meshes have no room for that. */
-enum { MOST_NORMALS = 1024 };
-static void keep_normals(struct sr_shape_mesh *m, struct sr_arena *arena)
+enum { MOST_PLANES = 1024 };
+void sr_mesh_keep_planes(struct sr_shape_mesh *m, struct sr_arena *arena)
 {
     uint32_t n = m->indices.count / 3;
-    sr_vec3 *normals = n <= MOST_NORMALS ? sr_arena_alloc(arena, n * sizeof *normals) : NULL;
+    struct sr_shape_plane *planes = n <= MOST_PLANES ? sr_arena_alloc(arena, n * sizeof *planes) : NULL;
     const int32_t *c = m->indices.data;
     const sr_vec3 *P = m->P.data;
-    for (uint32_t i = 0; normals && i < n; ++i, c += 3)
-        normals[i] = winding_normal(load(P + c[0]), load(P + c[1]), load(P + c[2]));
-    m->normals = normals;
+    for (uint32_t i = 0; planes && i < n; ++i, c += 3)
+        planes[i] = plane_of(load(P + c[0]), load(P + c[1]), load(P + c[2]));
+    m->planes = planes;
+}
+
+static inline struct sr_shape_plane find_plane(const struct sr_shape_mesh *m, uint32_t primitive, quad v0, quad v1, quad v2)
+{
+    return m->planes ? m->planes[primitive] : plane_of(v0, v1, v2);
 }
 
 static sr_status prepare(void *self, const struct sr_shape_placement *placement, struct sr_arena *arena,
@@ -90,7 +133,7 @@ static sr_status prepare(void *self, const struct sr_shape_placement *placement,
     const struct sr_mesh_arrays a = {"trianglemesh", 3, &m->indices, &m->P, &m->N, &m->S, &m->uv, &m->face_indices, &m->left_out};
     sr_status status = sr_mesh_place(&a, placement, &m->flip_normals, arena, error);
     if (status == SR_OK)
-        keep_normals(m, arena);
+        sr_mesh_keep_planes(m, arena);
     return status;
 }
 
@@ -148,12 +191,10 @@ static sr_vec3 blend(const sr_vec3 *a, const int32_t *c, float b0, float b1, flo
 
 static const float gamma7 = 7.1f * SR_MACHINE_EPSILON; // gamma(7), rounded up
 
-static sr_vec3 error_bound(const sr_vec3 v[3], float b0, float b1, float b2)
+/* Of the point, and of where the ray caster sees the plane. */
+static inline sr_vec3 error_bound(quad a, quad b, quad c, struct sr_shape_plane k)
 {
-    const float g = gamma7;
-    return (sr_vec3){g * (fabsf(b0 * v[0].x) + fabsf(b1 * v[1].x) + fabsf(b2 * v[2].x)),
-                     g * (fabsf(b0 * v[0].y) + fabsf(b1 * v[1].y) + fabsf(b2 * v[2].y)),
-                     g * (fabsf(b0 * v[0].z) + fabsf(b1 * v[1].z) + fabsf(b2 * v[2].z))};
+    return three(gamma7 * (magnitude(a) + magnitude(b) + magnitude(c)) + k.error * magnitude((quad){k.n.x, k.n.y, k.n.z, 0}));
 }
 
 /* From differences along two edges to derivatives by the texture coordinates. */
@@ -182,13 +223,13 @@ static void point(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_p
         turn_back(m, primitive, &c, b, turned);
         b0 = b[0], b1 = b[1], b2 = b[2];
     }
-    const sr_vec3 v[3] = {P[c[0]], P[c[1]], P[c[2]]};
-
-    x->p = sr_add(sr_add(sr_scale(b0, v[0]), sr_scale(b1, v[1])), sr_scale(b2, v[2]));
-    x->p_error = error_bound(v, b0, b1, b2);
+    quad v0 = load(P + c[0]), v1 = load(P + c[1]), v2 = load(P + c[2]);
+    quad a = b0 * v0, b = b1 * v1, d = b2 * v2;
+    x->p = three(a + b + d);
+    struct sr_shape_plane plane = find_plane(m, primitive, v0, v1, v2);
+    x->p_error = error_bound(a, b, d, plane);
     x->face = m->face_indices.count ? ((const int32_t *)m->face_indices.data)[primitive] : 0;
-    sr_vec3 p02 = sr_sub(v[0], v[2]), p12 = sr_sub(v[1], v[2]);
-    sr_vec3 n = sr_unit_normal(sr_cross(p02, p12));
+    sr_vec3 p02 = three(v0 - v2), p12 = three(v1 - v2), n = plane.n;
 
     struct slope k = {-1, -1, 0, -1, 1}; // of uv (0,0) (1,0) (1,1)
     bool has_slope = true;
@@ -254,8 +295,9 @@ static void bare_point(const void *self, uint32_t primitive, sr_vec2 hit, struct
     float b1 = hit.x, b2 = hit.y, b0 = 1 - b1 - b2;
     quad a = b0 * v0, b = b1 * v1, d = b2 * v2;
     x->p = three(a + b + d);
-    x->p_error = three(gamma7 * (magnitude(a) + magnitude(b) + magnitude(d)));
-    sr_vec3 n = m->normals ? m->normals[primitive] : winding_normal(v0, v1, v2);
+    struct sr_shape_plane plane = find_plane(m, primitive, v0, v1, v2);
+    x->p_error = error_bound(a, b, d, plane);
+    sr_vec3 n = plane.n;
     if (m->N.count) {
         sr_vec3 s = blend(m->N.data, c, b0, b1, b2);
         float l2 = sr_dot(s, s);
@@ -373,8 +415,10 @@ static bool sample(const void *self, uint32_t primitive, const struct sr_point *
         b[1] = t.y;
         b[2] = 1 - t.x - t.y;
     }
-    s->p = sr_add(sr_add(sr_scale(b[0], v[0]), sr_scale(b[1], v[1])), sr_scale(b[2], v[2]));
-    s->p_error = error_bound(v, b[0], b[1], b[2]);
+    const sr_vec3 *P = m->P.data;
+    quad v0 = load(P + c[0]), v1 = load(P + c[1]), v2 = load(P + c[2]), p0 = b[0] * v0, p1 = b[1] * v1, p2 = b[2] * v2;
+    s->p = three(p0 + p1 + p2);
+    s->p_error = error_bound(p0, p1, p2, find_plane(m, primitive, v0, v1, v2));
     s->n = outside(m, c, n, b[0], b[1], b[2]);
     s->uv = uv(self, primitive, (sr_vec2){b[1], b[2]});
     s->pdf = reference && !is_spherical ? sr_density_seen_from(reference->p, s->p, n, pdf) : pdf;

@@ -37,6 +37,8 @@ MUTANTS = [
     Mutant("the weights of two strategies do not add up to 1", "integrator/integrator.h", "a + b > 0 ? a / (a + b) : 0;", "a + b > 0 ? a / (a + 1.01f * b) : 0;",
            "analytic sources* [B8]"),
     Mutant("who survives the lot does not carry the others' share", "integrator/path.c", "beta *= 1 / survive;", ";", "analytic enclosures* [D1]"),
+    Mutant("rays leave triangles by the error of the point alone", "shape/trianglemesh.c", "return sr_min(32 * SR_MACHINE_EPSILON * of_normal,",
+           "return sr_min(0 * of_normal,", "truth nothing_meets_the_floor_that_it_leaves"),
     Mutant("shadows end at half of the way to the lamp", "scene/raycast.c", ".d = sr_sub(s->p, o), .time = x->time, .t_max = SHADOW_SHARE}",
            ".d = sr_sub(s->p, o), .time = x->time, .t_max = SHADOW_SHARE / 2}", "validate screened_0.75"),
     Mutant("light from below the horizon is not cut off", "bsdf/bsdf.h", "bool is_reflected = sr_same_hemisphere(wo, wi);", "bool is_reflected = true;",

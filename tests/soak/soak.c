@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Rays whose answers are known, by the thousand million: sr_soak [rays [threads [watertight | self-hits [first body]]]].
+/* Rays whose answers are known, by the thousand million: sr_soak [rays [threads [watertight | self-hits | floors [first body]]]].
  *
  * Of n trials without a fault the share of faults is below 3.0 / n with 95 % confidence (1 - 0.05^(1/n)). */
 #include "truth/rays.h"
@@ -21,6 +21,7 @@ struct run {
     const struct closed_mesh *mesh;
     enum aim aim;
     const struct convex_surface *convex;
+    const struct tilted_floor *floor;
     uint64_t rays, done, leaks, shadows, inward, missed;
 };
 
@@ -34,7 +35,7 @@ static void chunk(void *context, uint64_t i)
         __atomic_fetch_add(&r->leaks, l.leaks, __ATOMIC_RELAXED);
         __atomic_fetch_add(&r->shadows, l.shadows, __ATOMIC_RELAXED);
     } else {
-        struct self_hits h = leave_convex(r->convex, begin, end);
+        struct self_hits h = r->floor ? leave_floor(r->floor, begin, end) : leave_convex(r->convex, begin, end);
         __atomic_fetch_add(&r->done, h.rays, __ATOMIC_RELAXED);
         __atomic_fetch_add(&r->leaks, h.hits, __ATOMIC_RELAXED);
         __atomic_fetch_add(&r->inward, h.inward, __ATOMIC_RELAXED);
@@ -102,15 +103,35 @@ static uint64_t self_hits(uint64_t rays, int threads)
     return faults;
 }
 
+/* A floor has 8 rays of each of 10000 points. */
+static uint64_t floors(uint64_t rays, int threads)
+{
+    const uint64_t points = 10000;
+    uint64_t faults = 0, done = 0;
+    for (uint64_t i = 0; done < rays; ++i) {
+        struct tilted_floor f = make_floor(i / 2, i & 1, false);
+        struct run r = {.floor = &f};
+        cast(&r, points, threads);
+        if (r.leaks)
+            printf("  floor %" PRIu64 "%s: %" PRIu64 " hits of %" PRIu64 "\n", i / 2, i & 1 ? ", by pairs" : "", r.leaks, r.done);
+        done += r.done, faults += r.leaks;
+        free_floor(&f);
+    }
+    printf("floors: %" PRIu64 " faults in %" PRIu64 " rays: a share below %.2g with 95 %% confidence\n", faults, done, faults ? 1.0 : 3.0 / (double)done);
+    return faults;
+}
+
 int main(int argc, char **argv)
 {
     uint64_t rays = argc > 1 ? strtoull(argv[1], NULL, 10) : 1000000000;
     int threads = argc > 2 ? atoi(argv[2]) : sr_thread_count();
     const char *what = argc > 3 ? argv[3] : "";
     uint64_t faults = 0;
-    if (strcmp(what, "self-hits") != 0)
+    if (!*what || strcmp(what, "watertight") == 0)
         faults += watertight(rays, threads, argc > 4 ? atoi(argv[4]) : 0);
-    if (strcmp(what, "watertight") != 0)
+    if (!*what || strcmp(what, "self-hits") == 0)
         faults += self_hits(rays, threads);
+    if (!*what || strcmp(what, "floors") == 0)
+        faults += floors(rays, threads);
     return faults != 0;
 }

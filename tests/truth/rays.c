@@ -284,3 +284,117 @@ struct self_hits leave_convex(const struct convex_surface *s, uint64_t begin, ui
     }
     return out;
 }
+
+/* ---- floors ---- */
+
+enum { FLOOR_FACE = 1, LID_FACE, OTHER_FACE, OTHERS = 2100 };
+
+static void set_corners(struct tilted_floor *f, uint64_t number)
+{
+    static const sr_vec3 known[4] = {{-2.13123f, 0, 70.0611f}, {-71.502f, -8.75425e-6f, -2.15457f}, {0.713687f, 0, -71.5254f}, {70.0845f, 8.75425e-6f, 0.690351f}};
+    struct sr_rng rng = sr_rng_seed(number, 3);
+    f->span = number == 0 ? 71 : pow(10, 4 * (double)sr_rng_float(&rng));
+    f->is_needle = number % 4 == 3;
+    bool is_level = number % 4 != 1;
+    double width = f->is_needle ? pow(10, -3 * (double)sr_rng_float(&rng)) : 1, tilt = pow(10, -7 + 5 * (double)sr_rng_float(&rng)),
+           shift = sr_rng_float(&rng) < 0.5f ? 0 : 0.5 * f->span, along = 2 * M_PI * (double)sr_rng_float(&rng), turn = 2 * M_PI * (double)sr_rng_float(&rng);
+    for (int k = 0; k < 4; ++k) {
+        double phi = M_PI / 2 * k + 0.3 * (double)sr_rng_float(&rng), x = f->span * cos(phi), z = f->span * width * sin(phi);
+        double X = x * cos(along) - z * sin(along) + shift, Z = x * sin(along) + z * cos(along), Y = tilt * X;
+        if (!is_level) {
+            double Y0 = Y;
+            Y = cos(turn) * Y0 - sin(turn) * X;
+            X = sin(turn) * Y0 + cos(turn) * X;
+        }
+        f->corners[k] = number == 0 ? known[k] : (sr_vec3){(float)X, (float)Y, (float)Z};
+    }
+}
+
+static sr_vec3 middle_of(const struct tilted_floor *f)
+{
+    return sr_scale(0.25f, sr_add(sr_add(f->corners[0], f->corners[1]), sr_add(f->corners[2], f->corners[3])));
+}
+
+static sr_vec3 up_of(const struct tilted_floor *f)
+{
+    sr_vec3 n = sr_normalize(sr_cross(sr_sub(f->corners[2], f->corners[0]), sr_sub(f->corners[3], f->corners[1])));
+    return n.y < 0 ? sr_neg(n) : n;
+}
+
+struct tilted_floor make_floor(uint64_t number, bool is_paired, bool has_lid)
+{
+    struct tilted_floor f = {.scene = sr_scene_create(), .has_lid = has_lid};
+    set_corners(&f, number);
+    struct sr_arena *arena = sr_scene_arena(f.scene);
+    uint32_t quads = 1 + has_lid + (is_paired ? OTHERS : 0);
+    sr_vec3 *P = sr_arena_alloc(arena, 4 * quads * sizeof *P), *p = P, up = up_of(&f), middle = middle_of(&f);
+    int32_t *t = sr_arena_alloc(arena, 6 * quads * sizeof *t), *faces = sr_arena_alloc(arena, 2 * quads * sizeof *faces);
+    float d = (float)f.span;
+    for (uint32_t q = 0; q < quads; ++q, p += 4) {
+        bool is_floor = q == 0, is_lid = q == 1 && has_lid;
+        uint32_t i = q % 50, k = q / 50;
+        for (uint32_t c = 0; c < 4; ++c)
+            p[c] = is_floor ? f.corners[c]
+                   : is_lid ? sr_mad(sr_add(middle, sr_scale(0.9f, sr_sub(f.corners[c], middle))), 1e-5f * d, up)
+                            : (sr_vec3){d * (0.02f * (float)i + (c == 1 || c == 2 ? 0.01f : 0)), -20 * d, d * (0.02f * (float)k + (c > 1 ? 0.01f : 0))};
+        int32_t o = 4 * (int32_t)q, turn = (int32_t)((number + q) % 3); // any corner may be the first
+        int32_t first[3] = {o, o + 1, o + 2}, second[3] = {o, o + 2, o + 3};
+        for (int32_t c = 0; c < 3; ++c) {
+            t[6 * q + (uint32_t)c] = first[(c + turn) % 3];
+            t[6 * q + 3 + (uint32_t)c] = second[(c + turn) % 3];
+        }
+        faces[2 * q] = faces[2 * q + 1] = is_floor ? FLOOR_FACE : is_lid ? LID_FACE : OTHER_FACE;
+    }
+    struct sr_shape_mesh *m = sr_arena_alloc(arena, sizeof *m);
+    *m = (struct sr_shape_mesh){.indices = {t, 6 * quads}, .P = {P, 4 * quads}, .face_indices = {faces, 2 * quads}};
+    struct sr_shape_placement placement = {sr_transform_identity(), false};
+    if (sr_shape_trianglemesh.prepare(m, &placement, arena, sr_scene_error(f.scene)) != SR_OK)
+        test_fail(__FILE__, __LINE__, "%s", sr_scene_error(f.scene)->text);
+    place(f.scene, (struct sr_shape){&sr_shape_trianglemesh, m}, false, NULL);
+    EXPECT(m->pairs == (is_paired ? quads : 0));
+    return f;
+}
+
+void free_floor(struct tilted_floor *f)
+{
+    sr_scene_destroy(f->scene);
+}
+
+struct self_hits leave_floor(const struct tilted_floor *f, uint64_t begin, uint64_t end)
+{
+    struct self_hits out = {0};
+    sr_vec3 up = up_of(f), middle = middle_of(f);
+    float d = (float)f->span;
+    for (uint64_t i = begin; i < end; ++i) {
+        struct sr_rng rng = sr_rng_seed(i, 11);
+        // within the quad around the middle, so that what is looked for lies within the lid, too
+        uint32_t k = pick(&rng, 4);
+        sr_vec2 b = sr_warp_triangle((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)});
+        sr_vec3 e = sr_sub(f->corners[k], middle), g = sr_sub(f->corners[(k + 1) % 4], middle), at = sr_mad(sr_mad(middle, 0.85f * b.x, e), 0.85f * b.y, g);
+        bool is_below = i & 2;
+        sr_vec3 from = sr_warp_uniform_hemisphere((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)});
+        struct sr_frame frame = sr_frame_from_z(is_below ? sr_neg(up) : up);
+        from = sr_to_world(&frame, from);
+        struct sr_ray ray = {.o = sr_mad(at, d, from), .d = sr_neg(from), .t_max = INFINITY};
+        struct sr_hit hit, again;
+        if (!sr_raycast(f->scene, &ray, &hit) || hit.point.face == OTHER_FACE)
+            continue;
+        int32_t face = hit.point.face;
+        if (i & 1)
+            sr_raycast_bare(f->scene, &ray, &hit);
+        sr_vec3 n = sr_face_forward(hit.point.n, from);
+        frame = sr_frame_from_z(n);
+        for (int c = 0; c < 8; ++c) {
+            float z = c & 1 ? sr_rng_float(&rng) : powf(10, -6 * sr_rng_float(&rng)), r = sqrtf(1 - z * z), phi = 2 * SR_PI * sr_rng_float(&rng);
+            struct sr_ray leaving = sr_leave(&hit.point, sr_to_world(&frame, (sr_vec3){r * cosf(phi), r * sinf(phi), z}));
+            ++out.rays;
+            out.hits += sr_raycast(f->scene, &leaving, &again) && again.point.face == face;
+        }
+        if (f->has_lid) {
+            struct sr_ray through = sr_leave(&hit.point, sr_neg(n));
+            ++out.inward;
+            out.missed += !sr_raycast(f->scene, &through, &again) || again.point.face != LID_FACE + FLOOR_FACE - face;
+        }
+    }
+    return out;
+}

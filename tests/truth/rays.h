@@ -50,4 +50,20 @@ struct self_hits {
 };
 struct self_hits leave_convex(const struct convex_surface *s, uint64_t begin, uint64_t end);
 
+/* ---- floors: one quad of 1 to 10^4 m, of any attitude or tilted by 1e-7 to 1e-2, whole or a needle ---- */
+
+struct tilted_floor {
+    struct sr_scene *scene;
+    sr_vec3 corners[4];
+    double span;      // [m]
+    bool is_needle;   // its width is down to a thousandth of its length
+    bool has_lid;
+};
+/* Number 0 is a floor that a well-known scene has. is_paired: in a mesh of thousands of triangles, below, which the ray caster gets by pairs.
+ * has_lid: 1e-5 spans above it there is the same quad again, somewhat smaller. */
+struct tilted_floor make_floor(uint64_t number, bool is_paired, bool has_lid);
+void free_floor(struct tilted_floor *f);
+/* hits: rays that left the floor upward and met it again. Of a floor with a lid, inward: rays that left either for the other, missed: that did not meet it. */
+struct self_hits leave_floor(const struct tilted_floor *f, uint64_t begin, uint64_t end);
+
 #endif

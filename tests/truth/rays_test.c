@@ -48,6 +48,37 @@ TEST(a_small_instance_of_a_sphere_is_left_for_good)
     EXPECT_EQUAL_INT(h.hits, 0);
 }
 
+/* Large triangles, slightly tilted, alone or as the ray caster gets them by pairs (docs/decisions/0024-leaving-triangles.md). */
+TEST(nothing_meets_the_floor_that_it_leaves)
+{
+    uint64_t floors = is_slow_build() ? 4 : 60, points = is_slow_build() ? 300 : 2000;
+    for (uint64_t i = 0; i < floors; ++i)
+        for (int is_paired = 0; is_paired < 2; ++is_paired) {
+            struct tilted_floor f = make_floor(i, is_paired, false);
+            struct self_hits h = leave_floor(&f, 0, points);
+            EXPECT(h.rays > points);
+            if (h.hits)
+                test_fail(__FILE__, __LINE__, "floor %llu of %g m%s: %llu of %llu rays meet it again", (unsigned long long)i, f.span, is_paired ? ", of pairs" : "",
+                          (unsigned long long)h.hits, (unsigned long long)h.rays);
+            free_floor(&f);
+        }
+}
+
+TEST(what_rests_upon_a_floor_is_met_from_it)
+{
+    uint64_t floors = is_slow_build() ? 4 : 40;
+    for (uint64_t i = 0; i < floors; ++i) {
+        struct tilted_floor f = make_floor(i, i & 4, true);
+        struct self_hits h = leave_floor(&f, 0, 500);
+        if (!f.is_needle) {
+            EXPECT(h.inward > 250);
+            EXPECT_EQUAL_INT(h.missed, 0);
+        }
+        EXPECT_EQUAL_INT(h.hits, 0);
+        free_floor(&f);
+    }
+}
+
 /* Meshes that are not closed, or of media alone, cost nothing and change nothing. */
 TEST(what_leaves_a_closed_mesh_is_told_from_what_is_within)
 {
