@@ -6,7 +6,9 @@
  * and the path from a light that goes with it, where the estimator has such. */
 #include "render/private.h"
 
-static const float PIXEL_SHARE = 0.125f; // of a pixel's footprint: see sr_picture_sample
+#include <string.h>
+
+static const float PIXEL_SHARE = 0.125f; // of a pixel's footprint: see look
 
 /* Reflectance of the first surface under the output space's white, for the albedo channel. */
 static void first_albedo(const struct sr_render_job *job, struct sr_hit *hit, sr_vec3 d, const struct sr_sampler *sampler,
@@ -57,13 +59,14 @@ static struct sr_wavelengths even_wavelengths(const struct sr_response *r, float
 
 /* A wavelength's share of its bucket's mean: L / (pdf N step). One that dispersion has ended counts nothing, and the first one
  * more, so that the mean stays right. */
-static void add_to_buckets(const struct sr_response *r, sr_spectrum L, const struct sr_wavelengths *w, float weight, double *buckets)
+void sr_picture_add_to_buckets(const struct sr_picture *picture, const struct sr_picture_sample *s, double *buckets)
 {
-    float scale = weight * r->bucket_scale / (SR_LAMBDA_COUNT * r->lambda_step);
+    const struct sr_response *r = &picture->response;
+    float scale = s->weight * r->bucket_scale / (SR_LAMBDA_COUNT * r->lambda_step);
     for (int i = 0; i < SR_LAMBDA_COUNT; ++i) {
-        int bucket = (int)((w->lambda[i] - r->lambda_min) / r->lambda_step);
-        if (w->pdf[i] > 0 && isfinite(L[i]))
-            buckets[bucket < 0 ? 0 : bucket < (int)r->buckets ? bucket : (int)r->buckets - 1] += (double)(scale * L[i] / w->pdf[i]);
+        int bucket = (int)((s->w.lambda[i] - r->lambda_min) / r->lambda_step);
+        if (s->w.pdf[i] > 0 && isfinite(s->L[i]))
+            buckets[bucket < 0 ? 0 : bucket < (int)r->buckets ? bucket : (int)r->buckets - 1] += (double)(scale * s->L[i] / s->w.pdf[i]);
     }
 }
 
@@ -106,63 +109,97 @@ static void sense(const struct sr_render_job *job, const struct sr_response *r, 
         *share = job->film.max_component / largest;
 }
 
-bool sr_picture_sample(const struct sr_picture *picture, uint32_t x, uint32_t y, const struct sr_sampler *sampler, float rgb[3], double *buckets,
-                       struct sr_first_hit *first, struct sr_worker *worker)
+/* From the numbers of a sample to its ray, with the wavelengths and what the sample weighs; false: the sensor sees nothing there. */
+static __attribute__((noinline)) bool look(const struct sr_picture *picture, uint32_t x, uint32_t y, const struct sr_sampler *sampler, struct sr_picture_sample *out)
 {
     const struct sr_render_job *job = picture->job;
     const struct sr_response *response = &picture->response;
-    if (first)
-        *first = (struct sr_first_hit){0}; // where the sensor sees nothing at all
     sr_u4 u, u_lens;
     sr_sample8(sampler, SR_USE_FILM, &u, &u_lens);
-    float weight = 1;
-    sr_vec2 offset = job->jitter_pixel ? sr_filter_sample(&job->filter, (sr_vec2){u[0], u[1]}, &weight) : (sr_vec2){0, 0};
+    out->weight = 1;
+    out->view_weight = 0;
+    sr_vec2 offset = job->jitter_pixel ? sr_filter_sample(&job->filter, (sr_vec2){u[0], u[1]}, &out->weight) : (sr_vec2){0, 0};
     float u_lambda = job->jitter_lambda ? u[2] : 0.5f;
-    struct sr_wavelengths w = SR_UNLIKELY(response->buckets) ? even_wavelengths(response, u_lambda) : sr_wavelengths_draw(&response->law, u_lambda);
-    sr_wavelengths_know(&w, sr_scene_lights(job->scene)->white);
+    out->w = SR_UNLIKELY(response->buckets) ? even_wavelengths(response, u_lambda) : sr_wavelengths_draw(&response->law, u_lambda);
+    sr_wavelengths_know(&out->w, sr_scene_lights(job->scene)->white);
     struct sr_sensor_ray view;
-    rgb[0] = rgb[1] = rgb[2] = 0;
     sr_vec2 raster = {(float)x + 0.5f + offset.x, (float)y + 0.5f + offset.y};
     if (!response->ray(job->sensor.self, raster, (sr_vec2){u_lens[0], u_lens[1]}, u[3], &view))
-        return true;
+        return false;
 
     // jittered samples smooth a pixel themselves, so that textures need little filtering. pbrt's share at 64 samples and
     // more; the same at any count, or the picture's expectation would depend on it (bump maps: by a factor of 2)
     float share = job->jitter_pixel ? PIXEL_SHARE : 1;
-    struct sr_path_start start = {.ray = view.ray, .medium = sr_scene_sensor_medium(job->scene)};
+    out->start = (struct sr_path_start){.ray = view.ray, .medium = sr_scene_sensor_medium(job->scene)};
     if (!response->is_bare) {
-        start.dodx = sr_scale(share, view.dodx), start.dody = sr_scale(share, view.dody);
-        start.dddx = sr_scale(share, view.dddx), start.dddy = sr_scale(share, view.dddy);
+        out->start.dodx = sr_scale(share, view.dodx), out->start.dody = sr_scale(share, view.dody);
+        out->start.dddx = sr_scale(share, view.dddx), out->start.dddy = sr_scale(share, view.dddy);
     }
-    struct sr_hit hit;
-    sr_spectrum L = job->integrator.model->L(job->integrator.self, job->scene, &start, sampler, &w, first ? &hit : NULL, worker);
-    float v[3], kept;
-    sense(job, response, L, &w, view.weight, v, &kept);
-    weight *= view.weight * kept;
-    const float(*m)[3] = response->rgb_from_xyz;
-    for (int c = 0; c < 3; ++c)
-        rgb[c] = weight * (m[c][0] * v[0] + m[c][1] * v[1] + m[c][2] * v[2]);
-    if (SR_UNLIKELY(buckets))
-        add_to_buckets(response, L, &w, weight, buckets);
+    out->view_weight = view.weight;
+    return true;
+}
 
-    if (first) {
-        *first = (struct sr_first_hit){.is_hit = hit.material != NULL};
-        if (hit.material) {
-            first->n = hit.point.n;
-            first->ns = hit.point.ns;
-            first->p = hit.point.p;
-            first->depth = hit.t;
-            first->uv = hit.point.uv;
-            first->material = hit.material_number;
-            first->object = hit.object;
-            if (job->film.is_gbuffer)
-                fill_gbuffer(job, &start, &hit.point, first);
-            for (int c = 0; c < 3; ++c)
-                first->rgb[c] = rgb[c];
-            first_albedo(job, &hit, view.ray.d, sampler, &w, first->albedo);
-        }
+/* From radiance to what the film takes. */
+static __attribute__((noinline)) void develop(const struct sr_picture *picture, struct sr_picture_sample *s)
+{
+    float v[3], kept;
+    sense(picture->job, &picture->response, s->L, &s->w, s->view_weight, v, &kept);
+    s->weight *= s->view_weight * kept;
+    const float(*m)[3] = picture->response.rgb_from_xyz;
+    for (int c = 0; c < 3; ++c)
+        s->rgb[c] = s->weight * (m[c][0] * v[0] + m[c][1] * v[1] + m[c][2] * v[2]);
+    s->is_finite = isfinite(s->rgb[0]) && isfinite(s->rgb[1]) && isfinite(s->rgb[2]);
+}
+
+static void see_first(const struct sr_render_job *job, struct sr_picture_sample *s, struct sr_hit *hit, const struct sr_sampler *sampler)
+{
+    struct sr_first_hit *first = &s->first;
+    *first = (struct sr_first_hit){.is_hit = hit->material != NULL};
+    if (!hit->material)
+        return;
+    first->n = hit->point.n;
+    first->ns = hit->point.ns;
+    first->p = hit->point.p;
+    first->depth = hit->t;
+    first->uv = hit->point.uv;
+    first->material = hit->material_number;
+    first->object = hit->object;
+    if (job->film.is_gbuffer)
+        fill_gbuffer(job, &s->start, &hit->point, first);
+    first_albedo(job, hit, s->start.ray.d, sampler, &s->w, first->albedo);
+}
+
+/* Three rounds (look and develop are never part of their loops, so that a sample's bytes do not depend on its place there): rays of all samples, then their radiance, then their colours, so that in the first and the last one the processor
+ * does several at once. */
+void sr_picture_samples(const struct sr_picture *picture, uint32_t x, uint32_t y, const struct sr_sampler *start, uint32_t count, bool with_first,
+                        struct sr_picture_sample *out, struct sr_worker *worker)
+{
+    const struct sr_render_job *job = picture->job;
+    sr_u8 ahead[SR_AHEAD_GROUPS / 2 * SR_AHEAD];
+    struct sr_sampler sampler = *start;
+    uint32_t drawn = count > 1 ? sr_sampler_draw_ahead(start, count, ahead) : 0;
+    bool sees[SR_PICTURE_SAMPLES];
+    for (uint32_t k = 0; k < count; ++k) {
+        sampler.sample = start->sample + k, sampler.drawn = drawn, sampler.ahead = ahead + k;
+        sees[k] = look(picture, x, y, &sampler, &out[k]);
     }
-    return isfinite(rgb[0]) && isfinite(rgb[1]) && isfinite(rgb[2]);
+    for (uint32_t k = 0; k < count; ++k) {
+        sampler.sample = start->sample + k, sampler.drawn = drawn, sampler.ahead = ahead + k;
+        if (with_first)
+            out[k].first = (struct sr_first_hit){0}; // where the sensor sees nothing at all
+        out[k].L = SR_BLACK;
+        if (SR_UNLIKELY(!sees[k]))
+            continue;
+        struct sr_hit hit;
+        out[k].L = job->integrator.model->L(job->integrator.self, job->scene, &out[k].start, &sampler, &out[k].w, with_first ? &hit : NULL, worker);
+        if (with_first)
+            see_first(job, &out[k], &hit, &sampler);
+    }
+    for (uint32_t k = 0; k < count; ++k) {
+        develop(picture, &out[k]);
+        if (with_first && out[k].first.is_hit)
+            memcpy(out[k].first.rgb, out[k].rgb, sizeof out[k].rgb);
+    }
 }
 
 bool sr_render_sample(const struct sr_render_job *job, uint32_t x, uint32_t y, uint32_t replicate, uint32_t sample, float rgb[3],
@@ -170,7 +207,12 @@ bool sr_render_sample(const struct sr_render_job *job, uint32_t x, uint32_t y, u
 {
     struct sr_picture picture = {.job = job, .response = response_of(job)};
     struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, x, y, replicate, sample);
-    return sr_picture_sample(&picture, x, y, &sampler, rgb, NULL, first, worker);
+    struct sr_picture_sample s;
+    sr_picture_samples(&picture, x, y, &sampler, 1, first != NULL, &s, worker);
+    memcpy(rgb, s.rgb, sizeof s.rgb);
+    if (first)
+        *first = s.first;
+    return s.is_finite;
 }
 
 /* ---- paths from the lights ---- */

@@ -27,9 +27,21 @@ struct sr_picture {
     bool has_middle;
 };
 void sr_picture_begin(struct sr_picture *picture, const struct sr_render_job *job, struct sr_film *film);
-/* RGB as the film adds it; false: not finite. buckets: NULL, or added to. first: NULL, or what is seen first. */
-bool sr_picture_sample(const struct sr_picture *picture, uint32_t x, uint32_t y, const struct sr_sampler *sampler, float rgb[3], double *buckets,
-                       struct sr_first_hit *first, struct sr_worker *worker);
+/* One sample of a picture, on its way from numbers to what the film adds. */
+struct sr_picture_sample {
+    struct sr_wavelengths w;
+    struct sr_path_start start;
+    float weight, view_weight;
+    sr_spectrum L;              // [W m^-2 sr^-1 nm^-1]
+    float rgb[3];
+    bool is_finite;
+    struct sr_first_hit first;  // only where it has been asked for
+};
+enum { SR_PICTURE_SAMPLES = SR_AHEAD };
+/* Samples of one pixel, from start->sample on, up to SR_PICTURE_SAMPLES of them. */
+void sr_picture_samples(const struct sr_picture *picture, uint32_t x, uint32_t y, const struct sr_sampler *start, uint32_t count, bool with_first,
+                        struct sr_picture_sample *out, struct sr_worker *worker);
+void sr_picture_add_to_buckets(const struct sr_picture *picture, const struct sr_picture_sample *s, double *buckets);
 
 /* Where paths from the lights are told, by one thread. */
 struct sr_splatting {

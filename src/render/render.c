@@ -98,25 +98,31 @@ static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, 
     if (splatting)
         splatting->group = block % splatting->film->splats->groups;
     sr_block_tree_begin(tree, from - begin);
-    for (uint32_t i = from; i < to; ++i) {
-        double *buckets;
-        struct sr_film_block *b = sr_block_tree_sample(tree, &buckets);
+    uint32_t together = splatting ? 1 : SR_PICTURE_SAMPLES; // what has been splatted must stay: one after the other
+    for (uint32_t i = from, count; i < to; i += count) {
+        count = to - i < together ? to - i : together;
         sampler.sample = i;
         if (splatting) {
             sr_splatting_aim(splatting, pixel, replicate, i);
             if (job->integrator.model->splat)
                 sr_picture_splat(&run->picture, worker);
         }
-        float rgb[3];
-        struct sr_first_hit first;
-        bool is_finite = sr_picture_sample(&run->picture, x, y, &sampler, rgb, buckets, job->with_aov ? &first : NULL, worker);
-        if (SR_UNLIKELY(!is_finite))
-            remember_dropped(run, x, y, replicate, i);
-        sr_film_block_add(b, rgb, is_finite);
-        if (job->with_aov)
-            sr_film_block_add_first(b, &first);
-        sr_block_tree_done(tree);
-        if ((i & 15) == 15 && !splatting && is_cancelled(run)) // what has been splatted must stay
+        struct sr_picture_sample samples[SR_PICTURE_SAMPLES];
+        sr_picture_samples(&run->picture, x, y, &sampler, count, job->with_aov, samples, worker);
+        for (uint32_t k = 0; k < count; ++k) {
+            const struct sr_picture_sample *s = &samples[k];
+            double *buckets;
+            struct sr_film_block *b = sr_block_tree_sample(tree, &buckets);
+            if (SR_UNLIKELY(!s->is_finite))
+                remember_dropped(run, x, y, replicate, i + k);
+            if (SR_UNLIKELY(buckets))
+                sr_picture_add_to_buckets(&run->picture, s, buckets);
+            sr_film_block_add(b, s->rgb, s->is_finite);
+            if (job->with_aov)
+                sr_film_block_add_first(b, &s->first);
+            sr_block_tree_done(tree);
+        }
+        if (!splatting && is_cancelled(run))
             break;
     }
     if (splatting)
@@ -433,8 +439,8 @@ static uint32_t block_of(uint32_t spp, uint32_t blocks, uint32_t sample)
 
 static void try_sample(const void *picture, uint32_t x, uint32_t y, const struct sr_sampler *sampler, struct sr_worker *worker)
 {
-    float rgb[3];
-    sr_picture_sample(picture, x, y, sampler, rgb, NULL, NULL, worker);
+    struct sr_picture_sample sample;
+    sr_picture_samples(picture, x, y, sampler, 1, false, &sample, worker);
 }
 
 sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render_pass *pass, struct sr_render_report *report, struct sr_error *error)

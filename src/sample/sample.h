@@ -47,13 +47,22 @@ enum sr_sampler_kind {
     SR_SAMPLER_INDEPENDENT, // uniform, independent
 };
 
+typedef float sr_u4 __attribute__((vector_size(4 * sizeof(float))));
+typedef float sr_u8 __attribute__((vector_size(8 * sizeof(float))));
 struct sr_sampler {
-    uint32_t key;    // hash of seed, pixel and replicate
-    uint32_t sample; // index in the pixel's net
-    uint32_t kind;   // enum sr_sampler_kind
+    uint32_t key;       // hash of seed, pixel and replicate
+    uint32_t sample;    // index in the pixel's net
+    uint32_t kind;      // enum sr_sampler_kind
+    uint32_t drawn;     // groups below this one have been drawn ahead; 0: none
+    const sr_u8 *ahead; // of groups 2 k and 2 k + 1: ahead[k * SR_AHEAD]
 };
 struct sr_sampler sr_sampler_start(enum sr_sampler_kind kind, uint32_t seed, uint32_t pixel_x, uint32_t pixel_y,
                                    uint32_t replicate, uint32_t sample);
+/* The numbers of the first groups for s->sample and those after it, up to SR_AHEAD of them, exactly as sr_sample8 gives them: what
+ * depends on the pixel alone is worked out once, and samples do not wait for each other. Returns how many groups have been drawn;
+ * sample k finds its own from out[k] on. */
+enum { SR_AHEAD = 8, SR_AHEAD_GROUPS = 8 };
+uint32_t sr_sampler_draw_ahead(const struct sr_sampler *s, uint32_t count, sr_u8 out[SR_AHEAD_GROUPS / 2 * SR_AHEAD]);
 
 /* Four numbers in [0, 1) for one purpose ("group"); within a group the four are one 4-D Sobol' net whose components x, y
  * form a (0,2)-sequence: give x, y to what matters most.
@@ -64,7 +73,6 @@ struct sr_sampler sr_sampler_start(enum sr_sampler_kind kind, uint32_t seed, uin
  * in which each bit depends on lower ones only (S. Laine & T. Karras 2011, constants by N. Vegdahl 2021); shuffling the
  * index the same way makes groups independent (B. Burley, Practical Hash-based Owen Scrambling, 2020). The shuffle stays
  * within blocks of 65536, so that smaller indices need two look-ups. */
-typedef float sr_u4 __attribute__((vector_size(4 * sizeof(float))));
 typedef uint32_t sr_u4_bits __attribute__((vector_size(16)));
 extern const sr_u4_bits sr_sobol_table[4][256];
 extern const uint8_t sr_reversed_byte[256];
@@ -84,6 +92,22 @@ static inline sr_u4_bits sr_reverse_bits_u4(sr_u4_bits x)
     x = (x & 0x0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0fu);
     x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
     return (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
+}
+
+SR_INLINE uint32_t sr_index_begin(uint32_t sample) // < 65536: what all groups make of it
+{
+    uint32_t i = (uint32_t)sr_reversed_byte[sample & 255] << 8 | sr_reversed_byte[sample >> 8 & 255];
+    return i ^ i * 0x3d20adeau;
+}
+SR_INLINE uint32_t sr_index_shuffle(uint32_t i, uint32_t seed)
+{
+    i = (i + seed) * (seed >> 16 | 1);
+    i ^= i * 0x05526c56u;
+    return i ^ i * 0x53a22864u;
+}
+SR_INLINE sr_u4_bits sr_sobol_point(uint32_t i)
+{
+    return sr_sobol_table[1][i & 255] ^ sr_sobol_table[0][i >> 8 & 255];
 }
 
 static inline sr_u4 sr_sample4(const struct sr_sampler *s, uint32_t group)
@@ -112,13 +136,7 @@ static inline sr_u4 sr_sample4(const struct sr_sampler *s, uint32_t group)
     sr_u4_bits x = {0, 0, 0, 0};
     if (SR_UNLIKELY(index >> 16))
         x = sr_sobol_high((uint32_t)index >> 16, &seed);
-    uint32_t i = (uint32_t)sr_reversed_byte[index & 255] << 8 | sr_reversed_byte[index >> 8 & 255];
-    i ^= i * 0x3d20adeau;
-    i += seed;
-    i *= seed >> 16 | 1;
-    i ^= i * 0x05526c56u;
-    i ^= i * 0x53a22864u;
-    x ^= sr_sobol_table[1][i & 255] ^ sr_sobol_table[0][i >> 8 & 255];
+    x ^= sr_sobol_point(sr_index_shuffle(sr_index_begin((uint32_t)index), seed));
 
     x ^= x * 0x3d20adeau;
     x += lane;
@@ -128,37 +146,16 @@ static inline sr_u4 sr_sample4(const struct sr_sampler *s, uint32_t group)
     return sr_bits_to_u4(sr_reverse_bits_u4(x));
 }
 
-/* The numbers of group and of group + 1, exactly as sr_sample4 gives them, for two thirds of the price. */
-static inline void sr_sample8(const struct sr_sampler *s, uint32_t group, sr_u4 *first, sr_u4 *second)
+/* Eight numbers from two points of a net, each scrambled in its own way. */
+typedef uint32_t sr_u8_bits __attribute__((vector_size(32)));
+SR_INLINE sr_u8 sr_scramble8(sr_u4_bits point0, sr_u4_bits point1, sr_u8_bits add, sr_u8_bits multiply)
 {
-    if (SR_UNLIKELY(s->kind == SR_SAMPLER_INDEPENDENT || s->sample >> 16)) {
-        *first = sr_sample4(s, group);
-        *second = sr_sample4(s, group + 1);
-        return;
-    }
-    typedef uint64_t sr_wide4 __attribute__((vector_size(32)));
-    typedef uint32_t sr_u8_bits __attribute__((vector_size(32)));
     typedef int32_t sr_i8 __attribute__((vector_size(32)));
-    typedef float sr_u8 __attribute__((vector_size(8 * sizeof(float))));
     typedef uint8_t sr_bytes32 __attribute__((vector_size(32)));
-    uint64_t wide[2] = {(s->key ^ (uint64_t)group << 32) * 0x9e3779b97f4a7c15ull, (s->key ^ (uint64_t)(group + 1) << 32) * 0x9e3779b97f4a7c15ull};
-    uint32_t i0 = (uint32_t)sr_reversed_byte[s->sample & 255] << 8 | sr_reversed_byte[s->sample >> 8 & 255];
-    i0 ^= i0 * 0x3d20adeau;
-    sr_u4_bits points[2];
-    for (int k = 0; k < 2; ++k) {
-        wide[k] = (wide[k] ^ wide[k] >> 32) * 0xd6e8feb86659fd93ull;
-        wide[k] ^= wide[k] >> 32;
-        uint32_t seed = (uint32_t)wide[k], i = (i0 + seed) * (seed >> 16 | 1);
-        i ^= i * 0x05526c56u;
-        i ^= i * 0x53a22864u;
-        points[k] = sr_sobol_table[1][i & 255] ^ sr_sobol_table[0][i >> 8 & 255];
-    }
-    sr_wide4 product = {wide[0] * 0xbf58476d1ce4e5b9ull, wide[0] * 0x94d049bb133111ebull, wide[1] * 0xbf58476d1ce4e5b9ull, wide[1] * 0x94d049bb133111ebull};
-    sr_u8_bits lane = (sr_u8_bits)(product ^ product >> 32);
-    sr_u8_bits x = __builtin_shufflevector(points[0], points[1], 0, 1, 2, 3, 4, 5, 6, 7);
+    sr_u8_bits x = __builtin_shufflevector(point0, point1, 0, 1, 2, 3, 4, 5, 6, 7);
     x ^= x * 0x3d20adeau;
-    x += lane;
-    x *= lane >> 16 | 1;
+    x += add;
+    x *= multiply;
     x ^= x * 0x05526c56u;
     x ^= x * 0x53a22864u;
     sr_bytes32 b = (sr_bytes32)x;
@@ -167,7 +164,42 @@ static inline void sr_sample8(const struct sr_sampler *s, uint32_t group, sr_u4 
     x = (x & 0x0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0fu);
     x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
     x = (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
-    sr_u8 u = __builtin_convertvector((sr_i8)(x >> 8), sr_u8) * 0x1p-24f;
+    return __builtin_convertvector((sr_i8)(x >> 8), sr_u8) * 0x1p-24f;
+}
+
+/* What the pixel makes of a group and the one after it: how indices are shuffled, and how the eight lanes are scrambled. */
+struct sr_pair_seeds {
+    uint32_t seed[2];
+    sr_u8_bits lane;
+};
+SR_INLINE struct sr_pair_seeds sr_pair_seeds(uint32_t key, uint32_t group)
+{
+    typedef uint64_t sr_wide4 __attribute__((vector_size(32)));
+    uint64_t wide[2] = {(key ^ (uint64_t)group << 32) * 0x9e3779b97f4a7c15ull, (key ^ (uint64_t)(group + 1) << 32) * 0x9e3779b97f4a7c15ull};
+    for (int k = 0; k < 2; ++k) {
+        wide[k] = (wide[k] ^ wide[k] >> 32) * 0xd6e8feb86659fd93ull;
+        wide[k] ^= wide[k] >> 32;
+    }
+    sr_wide4 product = {wide[0] * 0xbf58476d1ce4e5b9ull, wide[0] * 0x94d049bb133111ebull, wide[1] * 0xbf58476d1ce4e5b9ull, wide[1] * 0x94d049bb133111ebull};
+    return (struct sr_pair_seeds){.seed = {(uint32_t)wide[0], (uint32_t)wide[1]}, .lane = (sr_u8_bits)(product ^ product >> 32)};
+}
+
+/* The numbers of group and of group + 1, exactly as sr_sample4 gives them, for two thirds of the price; for nearly nothing where
+ * they have been drawn ahead. */
+static inline void sr_sample8(const struct sr_sampler *s, uint32_t group, sr_u4 *first, sr_u4 *second)
+{
+    sr_u8 u;
+    if (group < s->drawn && !(group & 1)) {
+        u = s->ahead[group / 2 * SR_AHEAD];
+    } else if (SR_UNLIKELY(s->kind == SR_SAMPLER_INDEPENDENT || s->sample >> 16)) {
+        *first = sr_sample4(s, group);
+        *second = sr_sample4(s, group + 1);
+        return;
+    } else {
+        struct sr_pair_seeds p = sr_pair_seeds(s->key, group);
+        uint32_t i = sr_index_begin(s->sample);
+        u = sr_scramble8(sr_sobol_point(sr_index_shuffle(i, p.seed[0])), sr_sobol_point(sr_index_shuffle(i, p.seed[1])), p.lane, p.lane >> 16 | 1);
+    }
     *first = __builtin_shufflevector(u, u, 0, 1, 2, 3);
     *second = __builtin_shufflevector(u, u, 4, 5, 6, 7);
 }

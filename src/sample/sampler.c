@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Hashes, a small generator, and the start of a sampler.
+/* Hashes, a small generator, and the start of a sampler with what it draws ahead.
  *
  *     hash of bytes:  h <- fold(h ^ w, K) for each word w of 64 bits,    fold(x, K) = low(x K) ^ high(x K)
  *     PCG32:          s <- 6364136223846793005 s + c,    output = rotate(high bits of (s >> 18 ^ s), s >> 59)
@@ -69,4 +69,23 @@ sr_u4_bits sr_sobol_high(uint32_t high_half, uint32_t *seed)
 {
     *seed = sr_hash_combine(*seed, high_half);
     return sr_sobol_table[2][sr_reversed_byte[high_half & 255]] ^ sr_sobol_table[3][sr_reversed_byte[high_half >> 8]];
+}
+
+uint32_t sr_sampler_draw_ahead(const struct sr_sampler *s, uint32_t count, sr_u8 out[SR_AHEAD_GROUPS / 2 * SR_AHEAD])
+{
+    if (s->kind == SR_SAMPLER_INDEPENDENT || (s->sample + SR_AHEAD) >> 16)
+        return 0;
+    uint32_t begun[SR_AHEAD], i[2][SR_AHEAD];
+    for (uint32_t k = 0; k < SR_AHEAD; ++k)
+        begun[k] = sr_index_begin(s->sample + k);
+    for (uint32_t pair = 0; pair < SR_AHEAD_GROUPS / 2; ++pair) {
+        struct sr_pair_seeds p = sr_pair_seeds(s->key, 2 * pair);
+        sr_u8_bits multiply = p.lane >> 16 | 1;
+        for (int half = 0; half < 2; ++half)
+            for (uint32_t k = 0; k < SR_AHEAD; ++k) // one vector
+                i[half][k] = sr_index_shuffle(begun[k], p.seed[half]);
+        for (uint32_t k = 0; k < count; ++k)
+            out[pair * SR_AHEAD + k] = sr_scramble8(sr_sobol_point(i[0][k]), sr_sobol_point(i[1][k]), p.lane, multiply);
+    }
+    return SR_AHEAD_GROUPS;
 }
