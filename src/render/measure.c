@@ -172,7 +172,8 @@ struct plan {
     bool is_last;
 };
 
-/* What comes after a round of n samples that has taken elapsed_s in all. */
+/* What comes after a round of n samples that has taken elapsed_s in all. The last one takes no fewer: where u falls faster than
+ * 1 / sqrt(n), as with nets, it rises faster too. */
 static struct plan plan_next(const struct measuring *m, const struct sr_measurement *now, uint64_t n, uint64_t most, double round_s, double elapsed_s)
 {
     const struct sr_measure_settings *s = m->settings;
@@ -181,7 +182,7 @@ static struct plan plan_next(const struct measuring *m, const struct sr_measurem
         limit = fmin(limit, fmax(PILOT, 0.95 * (s->time_s - elapsed_s) * (double)n / fmax(round_s, 1e-6)));
     double grown = 8.0 * (double)n;
     bool is_last = need <= 2 * grown || limit <= 2 * grown;
-    double next = is_last ? fmin(fmax(need, PILOT), limit) : grown;
+    double next = is_last ? fmin(fmax(need, (double)n), limit) : grown;
     double whole = (double)whole_net(next);
     return (struct plan){(uint64_t)fmax(1, fmin(whole, limit)), is_last};
 }
