@@ -7,6 +7,7 @@
 #include "scene/private.h"
 
 #include <stdio.h>
+#include <string.h>
 
 static const float LARGEST = 1.844e18f; // [m]
 enum { TOLD = 10 };
@@ -68,21 +69,66 @@ void scene_count_degenerate(struct sr_scene *scene, const struct sr_shape_def *d
         no_memory(scene);
 }
 
+/* ---- telling: once for each file and kind ---- */
+
+struct group {
+    const struct degenerate *first;
+    int kind;
+    uint64_t unmet, of, shapes;
+};
+
+/* The name alone: places within glTF files are a part of it. */
+static size_t name_length(const struct sr_location *where)
+{
+    const char *file = where->file ? where->file : "", *inside = where->line ? NULL : strstr(file, ": /");
+    return inside ? (size_t)(inside - file) : strlen(file);
+}
+
+static bool is_same_file(const struct sr_location *a, const struct sr_location *b)
+{
+    size_t n = name_length(a);
+    return n == name_length(b) && (n == 0 || memcmp(a->file, b->file, n) == 0);
+}
+
+static void tell(const struct group *g, struct sr_log *log)
+{
+    static const char *const why[3] = {"have no area", "reach beyond 1.844e+18 m", "have numbers that are not finite"};
+    const struct sr_location *where = &g->first->where;
+    char place[600] = "", more[100] = "";
+    if (where->file)
+        snprintf(place, sizeof place, where->line ? "%s:%d:%d: " : "%s: ", where->file, where->line, where->column);
+    if (g->shapes > 1)
+        snprintf(more, sizeof more, " (of %llu shapes of this file; this is the first)", (unsigned long long)g->shapes);
+    sr_log(log, SR_WARNING, "%s%s: %llu of %llu primitives %s, and no ray meets them%s", place, g->first->model, (unsigned long long)g->unmet,
+           (unsigned long long)g->of, why[g->kind], more);
+}
+
 void sr_scene_tell_degenerate(const struct sr_scene *scene, struct sr_log *log)
 {
     const struct degenerate *all = scene->degenerates.data;
-    size_t n = scene->degenerates.count;
-    for (size_t i = 0; i < n && i < TOLD; ++i) {
-        const struct degenerate *d = &all[i];
-        char place[600] = "";
-        if (d->where.file)
-            snprintf(place, sizeof place, d->where.line ? "%s:%d:%d: " : "%s: ", d->where.file, d->where.line, d->where.column);
-        sr_log(log, SR_WARNING, "%s%s: of %llu primitives no ray meets %llu without area, %llu beyond %g m, %llu with numbers that are not finite", place,
-               d->model, (unsigned long long)d->count, (unsigned long long)d->without_area, (unsigned long long)d->too_large, (double)LARGEST,
-               (unsigned long long)d->not_finite);
+    struct group groups[TOLD];
+    size_t count = 0, untold = 0;
+    for (size_t i = 0; i < scene->degenerates.count; ++i) {
+        const uint64_t unmet[3] = {all[i].without_area, all[i].too_large, all[i].not_finite};
+        for (int kind = 0; kind < 3; ++kind) {
+            size_t at = 0;
+            while (at < count && !(groups[at].kind == kind && is_same_file(&groups[at].first->where, &all[i].where)))
+                ++at;
+            if (unmet[kind] == 0 || at == TOLD) {
+                untold += unmet[kind] != 0;
+                continue;
+            }
+            if (at == count)
+                groups[count++] = (struct group){.first = &all[i], .kind = kind};
+            groups[at].unmet += unmet[kind];
+            groups[at].of += all[i].count;
+            ++groups[at].shapes;
+        }
     }
-    if (n > TOLD)
-        sr_log(log, SR_WARNING, "%zu more shapes have primitives that no ray meets", n - TOLD);
+    for (size_t i = 0; i < count; ++i)
+        tell(&groups[i], log);
+    if (untold)
+        sr_log(log, SR_WARNING, "%zu shapes of other files have primitives that no ray meets", untold);
 }
 
 /* ---- copies ---- */

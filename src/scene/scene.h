@@ -132,7 +132,7 @@ struct sr_scene_counts sr_scene_count(const struct sr_scene *scene);
 /* Triangles that have the corners of another one of their mesh, in any order: both are there, and which is met is left to rounding.
  * Takes 16 to 32 bytes a triangle while it looks; less memory: 0. */
 uint64_t sr_scene_count_duplicates(const struct sr_scene *scene);
-/* A warning for each shape that has primitives that no ray meets, up to ten. */
+/* Warnings of primitives that no ray meets: for each file and kind one, with the first place, up to ten. */
 void sr_scene_tell_degenerate(const struct sr_scene *scene, struct sr_log *log);
 
 #endif

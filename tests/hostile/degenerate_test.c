@@ -60,7 +60,27 @@ TEST(triangles_without_area_are_counted_and_told_by_line)
                                                 "\"integer indices\" [0 1 2  0 0 1  0 1 3  0 4 5]\nShape \"sphere\"\n", NULL);
     EXPECT_EQUAL_INT(c.triangles, 4);
     EXPECT_EQUAL_INT(c.degenerate, 3); // two corners in one place, three on a line, an area below the least float
-    EXPECT(strstr(messages, "scene.pbrt:3:1: trianglemesh: of 4 primitives no ray meets 3 without area, 0 beyond"));
+    EXPECT(strstr(messages, "scene.pbrt:3:1: trianglemesh: 3 of 4 primitives have no area, and no ray meets them\n"));
+}
+
+TEST(what_no_ray_meets_is_told_once_for_each_file_and_kind)
+{
+    char text[4096], *p = text;
+    p += sprintf(p, CAMERA);
+    for (int i = 0; i < 30; ++i) // every other one has its corners on a line
+        p += sprintf(p, "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 %s]\n", i & 1 ? "2 0 0" : "0 1 0");
+    static const char more[] = "Shape \"sphere\" Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 2 0 0]\n";
+    write_file("more.pbrt", more, sizeof more - 1);
+    sprintf(p, "Include \"more.pbrt\"\n");
+    struct sr_scene_counts c = try_scene(text, NULL);
+    EXPECT_EQUAL_INT(c.degenerate, 16);
+    EXPECT(strstr(messages, "scene.pbrt:4:1: trianglemesh: 15 of 15 primitives have no area, and no ray meets them (of 15 shapes of this file; this is the first)\n"));
+    EXPECT(strstr(messages, "more.pbrt:1:16: trianglemesh: 1 of 1 primitives have no area, and no ray meets them\n"));
+    EXPECT(!strstr(messages, "beyond"));
+    int lines = 0;
+    for (const char *at = messages; (at = strchr(at, '\n')); ++at)
+        ++lines;
+    EXPECT_EQUAL_INT(lines, 2);
 }
 
 TEST(lights_without_area_shine_with_what_they_have)
@@ -84,7 +104,7 @@ TEST(triangles_too_large_for_the_ray_caster_are_counted)
     struct sr_scene_counts c = try_scene(CAMERA "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1e19 0 0 3e38 0 1e38] "
                                                 "\"integer indices\" [0 1 2  0 1 3  0 4 2]\n", NULL);
     EXPECT_EQUAL_INT(c.too_large, 2);
-    EXPECT(strstr(messages, "2 beyond 1.844e+18 m"));
+    EXPECT(strstr(messages, "2 of 3 primitives reach beyond 1.844e+18 m"));
 }
 
 TEST(triangles_with_denormal_corners_are_there)
@@ -116,7 +136,7 @@ TEST(a_ply_mesh_loses_the_faces_whose_numbers_are_none)
         struct sr_scene_counts c = try_scene(text, NULL);
         EXPECT_EQUAL_INT(c.triangles, 2);
         EXPECT_EQUAL_INT(c.not_finite, 2);
-        EXPECT(strstr(messages, "with numbers that are not finite"));
+        EXPECT(strstr(messages, "2 of 4 primitives have numbers that are not finite"));
     }
 }
 
