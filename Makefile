@@ -6,7 +6,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 OUT ?= out
 SECONDS ?= 60
 
-.PHONY: all render test test-asan test-tsan fuzz soak soak-rays same-bytes mutants validate bench pgo check format format-reference install clean packages
+.PHONY: all render test test-asan test-tsan fuzz soak soak-rays same-bytes mutants validate bench scale pgo wavelengths check format format-reference install clean packages
 
 all: packages
 	@cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release >$(BUILD).log 2>&1 || { cat $(BUILD).log; exit 1; }
@@ -75,6 +75,15 @@ pgo: packages
 bench: all
 	$(BUILD)/sr_bench
 
+# how time and memory grow: docs/scale.md and its figure; builds for 4 and 16 wavelengths beside, then some minutes on a quiet machine
+RUNS ?= 3
+scale: all
+	JOBS=$(JOBS) bench/scale $(BUILD) $(RUNS)
+
+# paths of 4 and of 16 wavelengths give the pictures of those of 8, within their error bars
+wavelengths: all
+	JOBS=$(JOBS) tests/levels/wavelengths $(BUILD)
+
 # format, house rules, fast tests: what one runs before a commit
 check: all
 	ctest --test-dir $(BUILD) --output-on-failure -L fast
@@ -94,4 +103,4 @@ install: all
 	cmake --install $(BUILD) --prefix $(PREFIX)
 
 clean:
-	rm -rf $(BUILD) build-asan build-tsan build-debug build-fuzz build-mutants build-pgo $(OUT) *.log
+	rm -rf $(BUILD) build-asan build-tsan build-debug build-fuzz build-mutants build-pgo $(BUILD)-w4 $(BUILD)-w16 $(OUT) *.log

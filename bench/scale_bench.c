@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* How time and memory grow with triangles, lights, depth, pixels and threads: one line of JSON for each point, and a figure.
+/* How time and memory grow with triangles, lights, depth, pixels, wavelengths and threads: one line of JSON for each point; a
+ * figure and a table of such lines, which may come from builds for 4, 8 and 16 wavelengths (bench/scale).
  *
  * Each point runs in a process of its own, which makes its scene, reads it, renders it and tells through a pipe. */
 #include "scale_bench.h"
@@ -7,6 +8,7 @@
 #include "plot/plot.h"
 #include "render/render.h"
 
+#include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,8 +27,8 @@ struct series {
 };
 
 struct point {
-    double read_s, build_s, path_ns, paths_per_s;
-    uint64_t memory_B, rays_per_1000_paths;
+    double read_s, build_s, path_ns, paths_per_s, rays_per_path, memory_B;
+    double variance; // [1] of one path, relative to the square of the picture's mean, over pixels and colours
 };
 
 /* ---- scenes ---- */
@@ -118,7 +120,8 @@ static const struct series all_series[] = {
     {"lights", "lights", lights, 6, {1, 10, 100, 1000, 10000, 100000}},
     {"depth", "longest path", one_lamp, 6, {1, 2, 4, 8, 16, 32}},
     {"pixels", "pixels", one_lamp, 5, {4096, 16384, 65536, 262144, 1048576}},
-    {"threads", "threads", one_lamp, 4, {1, 2, 3, 4}},
+    {"wavelengths", "wavelengths", one_lamp, 1, {SR_LAMBDA_COUNT}},
+    {"threads", "threads", one_lamp, 12, {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64}},
 };
 enum { SERIES = sizeof all_series / sizeof *all_series };
 
@@ -164,16 +167,18 @@ static int measure(const struct series *s, uint64_t n, const char *folder, int r
             fprintf(stderr, "sr_bench: %s\n", error.text);
             return 1;
         }
+        for (int c = 0; c < 3; ++c)
+            p->variance += pow(sr_film_relative_error(film, (const double[3]){c == 0, c == 1, c == 2}), 2) * scene.spp / (3 * runs);
         sr_film_destroy(film);
         // of one thread the processor's time, which others on the machine do not add to
         best = fmin(best, (is_threads ? report.render_s : processor_s() - start_s) / (double)report.paths);
-        p->rays_per_1000_paths = 1000 * (report.rays + report.shadow_rays) / report.paths;
+        p->rays_per_path = (double)(report.rays + report.shadow_rays) / (double)report.paths;
     }
     p->read_s = scene.read_s;
     p->build_s = sr_scene_count(scene.scene).build_s;
     p->path_ns = 1e9 * best;
     p->paths_per_s = 1 / best;
-    p->memory_B = sr_peak_memory_B();
+    p->memory_B = (double)sr_peak_memory_B();
     sr_import_result_free(&scene);
     return 0;
 }
@@ -198,40 +203,8 @@ static bool measure_apart(const struct series *s, uint64_t n, const char *folder
     return child > 0 && waitpid(child, &status, 0) == child && status == 0 && is_good;
 }
 
-/* ---- the figure ---- */
-
-struct results {
-    double x[MAX_POINTS], path_us[MAX_POINTS], memory_MB[MAX_POINTS], load_s[MAX_POINTS], paths_per_s[MAX_POINTS];
-    uint32_t count;
-};
-
-static bool draw(const struct results r[SERIES], const char *path)
+int bench_scale(const char *only, const char *folder, int runs)
 {
-    struct sr_plot_curve c[8] = {0};
-    struct sr_plot_panel panels[8] = {0};
-    uint32_t n = 0;
-    for (int i = 0; i < SERIES; ++i) {
-        bool is_threads = strcmp(all_series[i].name, "threads") == 0;
-        const double *values[3] = {is_threads ? r[i].paths_per_s : r[i].path_us, r[i].memory_MB, r[i].load_s};
-        const char *labels[3] = {is_threads ? "paths a second" : "time of a path", "peak memory", "read and built"};
-        const char *units[3] = {is_threads ? "s^{-1}" : "µs", "MB", "s"};
-        int shown = strcmp(all_series[i].name, "triangles") == 0 ? 3 : strcmp(all_series[i].name, "pixels") == 0 ? 2 : 1;
-        for (int k = 0; k < shown && r[i].count; ++k, ++n) {
-            c[n] = (struct sr_plot_curve){.x = r[i].x, .y = values[k], .count = r[i].count, .colour = 1 + k, .has_points = true};
-            panels[n] = (struct sr_plot_panel){.x = {.label = all_series[i].axis, .is_log = !is_threads, .step = is_threads}, .y = {.label = labels[k], .unit = units[k], .is_log = !is_threads, .to = is_threads ? 1.1 * r[i].paths_per_s[r[i].count - 1] : 0},
-                                               .curves = &c[n], .curve_count = 1, .has_no_legend = true};
-        }
-    }
-    struct sr_plot_figure figure = {.title = "How time and memory grow", .panels = panels, .panel_count = n, .columns = 4};
-    struct sr_error error = {0};
-    if (n && sr_plot_write(&figure, path, &error) != SR_OK)
-        fprintf(stderr, "sr_bench: %s\n", error.text);
-    return !error.status;
-}
-
-int bench_scale(const char *only, const char *folder, int runs, const char *figure)
-{
-    struct results results[SERIES] = {0};
     bool is_good = true, is_known = only == NULL;
     for (int i = 0; i < SERIES; ++i) {
         const struct series *s = &all_series[i];
@@ -239,24 +212,117 @@ int bench_scale(const char *only, const char *folder, int runs, const char *figu
             continue;
         is_known = true;
         for (int k = 0; k < s->count; ++k) {
+            if (strcmp(s->name, "threads") == 0 && s->at[k] > 4 && s->at[k] > (uint64_t)sr_thread_count())
+                continue;
             struct point p;
             if (!measure_apart(s, s->at[k], folder, runs, &p)) {
                 is_good = false;
                 continue;
             }
-            printf("{\"scale\": \"%s\", \"n\": %llu, \"wavelengths\": %d, \"path_ns\": %.0f, \"paths_per_s\": %.0f, \"rays_per_path\": %.3f, \"read_s\": %.4f, \"build_s\": %.4f, "
-                   "\"peak_memory_B\": %llu}\n",
-                   s->name, (unsigned long long)s->at[k], SR_LAMBDA_COUNT, p.path_ns, p.paths_per_s, 1e-3 * (double)p.rays_per_1000_paths, p.read_s, p.build_s,
-                   (unsigned long long)p.memory_B);
-            struct results *r = &results[i];
-            r->x[r->count] = (double)s->at[k];
-            r->path_us[r->count] = 1e-3 * p.path_ns;
-            r->paths_per_s[r->count] = p.paths_per_s;
-            r->memory_MB[r->count] = 1e-6 * (double)p.memory_B;
-            r->load_s[r->count++] = p.read_s + p.build_s;
+            printf("{\"scale\": \"%s\", \"n\": %llu, \"wavelengths\": %d, \"path_ns\": %.0f, \"paths_per_s\": %.0f, \"rays_per_path\": %.3f, \"variance\": %.4g, "
+                   "\"read_s\": %.4f, \"build_s\": %.4f, \"peak_memory_B\": %.0f}\n",
+                   s->name, (unsigned long long)s->at[k], SR_LAMBDA_COUNT, p.path_ns, p.paths_per_s, p.rays_per_path, p.variance, p.read_s, p.build_s, p.memory_B);
         }
     }
     if (!is_known)
-        fprintf(stderr, "sr_bench: --scale=%s: expected triangles, lights, depth, pixels or threads\n", only);
-    return !is_known ? 2 : !is_good || (figure && !draw(results, figure));
+        fprintf(stderr, "sr_bench: --scale=%s: expected triangles, lights, depth, pixels, wavelengths or threads\n", only);
+    return !is_known ? 2 : !is_good;
+}
+
+/* ---- figure and table ---- */
+
+struct results {
+    double x[MAX_POINTS], path_us[MAX_POINTS], memory_MB[MAX_POINTS], load_s[MAX_POINTS], paths_per_s[MAX_POINTS], rays[MAX_POINTS], work_us[MAX_POINTS];
+    uint32_t count;
+};
+
+static double number(const json_t *line, const char *name)
+{
+    return json_number_value(json_object_get(line, name));
+}
+
+static void read_lines(FILE *from, struct results results[SERIES])
+{
+    char text[4096];
+    while (fgets(text, sizeof text, from)) {
+        json_t *line = json_loads(text, 0, NULL);
+        const char *name = json_string_value(json_object_get(line, "scale"));
+        for (int i = 0; name && i < SERIES; ++i) {
+            struct results *r = &results[i];
+            if (strcmp(name, all_series[i].name) != 0 || r->count == MAX_POINTS)
+                continue;
+            uint32_t k = r->count++;
+            r->x[k] = number(line, "n");
+            r->path_us[k] = 1e-3 * number(line, "path_ns");
+            r->paths_per_s[k] = number(line, "paths_per_s");
+            r->rays[k] = number(line, "rays_per_path");
+            r->memory_MB[k] = 1e-6 * number(line, "peak_memory_B");
+            r->load_s[k] = number(line, "read_s") + number(line, "build_s");
+            r->work_us[k] = r->path_us[k] * number(line, "variance");
+        }
+        json_decref(line);
+    }
+}
+
+static sr_status draw(const struct results results[SERIES], const char *path, struct sr_error *error)
+{
+    struct sr_plot_curve c[3 * SERIES] = {0};
+    struct sr_plot_panel panels[3 * SERIES] = {0};
+    uint32_t n = 0;
+    for (int i = 0; i < SERIES; ++i) {
+        const struct results *r = &results[i];
+        const char *name = all_series[i].name;
+        bool is_threads = strcmp(name, "threads") == 0, is_triangles = strcmp(name, "triangles") == 0;
+        const struct shown {
+            const double *values;
+            const char *label, *unit;
+            bool is_shown;
+        } shown[] = {
+            {r->path_us, "time of a path", "µs", !is_threads},
+            {r->paths_per_s, "paths a second", "s^{-1}", is_threads},
+            {r->memory_MB, "peak memory", "MB", is_triangles || strcmp(name, "lights") == 0 || strcmp(name, "pixels") == 0},
+            {r->load_s, "read and built", "s", is_triangles},
+            {r->work_us, "time x variance of a path", "µs", strcmp(name, "wavelengths") == 0},
+        };
+        for (size_t k = 0; k < sizeof shown / sizeof *shown && r->count; ++k) {
+            if (!shown[k].is_shown)
+                continue;
+            double most = 0;
+            for (uint32_t j = 0; j < r->count; ++j)
+                most = fmax(most, shown[k].values[j]);
+            bool is_linear = is_threads || strcmp(name, "wavelengths") == 0;
+            c[n] = (struct sr_plot_curve){.x = r->x, .y = shown[k].values, .count = r->count, .colour = 1 + (int)k % 4, .has_points = true};
+            panels[n] = (struct sr_plot_panel){.x = {.label = all_series[i].axis, .is_log = !is_linear, .step = is_threads ? 1 : is_linear ? 4 : 0},
+                                               .y = {.label = shown[k].label, .unit = shown[k].unit, .is_log = !is_linear, .to = is_linear ? 1.1 * most : 0},
+                                               .curves = &c[n], .curve_count = 1, .has_no_legend = true};
+            ++n;
+        }
+    }
+    struct sr_plot_figure figure = {.title = "How time and memory grow", .panels = panels, .panel_count = n, .columns = 4};
+    return n ? sr_plot_write(&figure, path, error) : sr_fail(error, SR_ERROR_INPUT, "there are no lines of sr_bench --scale");
+}
+
+int bench_scale_draw(const char *lines, const char *figure)
+{
+    struct results results[SERIES] = {0};
+    struct sr_error error = {0};
+    FILE *from = fopen(lines, "r");
+    if (!from) {
+        fprintf(stderr, "sr_bench: %s cannot be read\n", lines);
+        return 1;
+    }
+    read_lines(from, results);
+    fclose(from);
+    if (figure && draw(results, figure, &error) != SR_OK) {
+        fprintf(stderr, "sr_bench: %s\n", error.text);
+        return 1;
+    }
+    printf("| varied | | time of a path [µs] | paths/s [k] | rays a path | time x variance of a path [µs] | read and built [s] | peak memory [MB] |\n|---|---|---|---|---|---|---|---|\n");
+    for (int i = 0; i < SERIES; ++i)
+        for (uint32_t k = 0; k < results[i].count; ++k) {
+            const struct results *r = &results[i];
+            printf("| %s | %.0f | %.3g | %.0f | %.2f | %.3g | %.3g | %.1f |\n", all_series[i].axis, r->x[k], r->path_us[k], 1e-3 * r->paths_per_s[k], r->rays[k], r->work_us[k],
+                   r->load_s[k], r->memory_MB[k]);
+        }
+    return 0;
 }

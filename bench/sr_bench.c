@@ -249,10 +249,10 @@ int main(int argc, char **argv)
 {
     static const struct option options[] = {
         {"case", required_argument, NULL, 'c'}, {"scene", required_argument, NULL, 'f'}, {"spp", required_argument, NULL, 's'}, {"size", required_argument, NULL, 'z'},
-        {"runs", required_argument, NULL, 'r'}, {"folder", required_argument, NULL, 'd'}, {"bsdf", optional_argument, NULL, 'b'}, {"scale", optional_argument, NULL, 'g'}, {"figure", required_argument, NULL, 'i'}, {"help", no_argument, NULL, 'h'}, {NULL, 0, NULL, 0},
+        {"runs", required_argument, NULL, 'r'}, {"folder", required_argument, NULL, 'd'}, {"bsdf", optional_argument, NULL, 'b'}, {"scale", optional_argument, NULL, 'g'}, {"draw", required_argument, NULL, 'w'}, {"figure", required_argument, NULL, 'i'}, {"help", no_argument, NULL, 'h'}, {NULL, 0, NULL, 0},
     };
     struct settings s = {.folder = SR_BENCH_BUILD_DIR "/bench-scenes", .spp = 16, .size = 256, .runs = 3, .seed = 1};
-    const char *scale = NULL, *figure = NULL;
+    const char *scale = NULL, *figure = NULL, *draw = NULL;
     int option;
     while ((option = getopt_long(argc, argv, "h", options, NULL)) != -1)
         switch (option) {
@@ -264,11 +264,14 @@ int main(int argc, char **argv)
         case 'd': s.folder = optarg; break;
         case 'b': return bench_bsdfs(optarg);
         case 'g': scale = optarg ? optarg : ""; break;
+        case 'w': draw = optarg; break;
         case 'i': figure = optarg; break;
         default:
-            printf("Usage: sr_bench --bsdf[=MODEL]\n       sr_bench --scale[=triangles|lights|depth|pixels|threads] [--figure FILE.svg|.png] [--runs N]\n       sr_bench [--case cornell|mesh|glossy|emitters|load] [--scene FILE] [--spp N] [--size PIXELS] [--runs N] [--folder SCENES]\n");
+            printf("Usage: sr_bench --bsdf[=MODEL]\n       sr_bench --scale[=triangles|lights|depth|pixels|wavelengths|threads] [--runs N]\n       sr_bench --draw LINES-OF-SCALE [--figure FILE.svg|.png]\n       sr_bench [--case cornell|mesh|glossy|emitters|load] [--scene FILE] [--spp N] [--size PIXELS] [--runs N] [--folder SCENES]\n");
             return option == 'h' ? 0 : 2;
         }
+    if (draw)
+        return bench_scale_draw(draw, figure);
     s.runs = s.runs < 1 ? 1 : s.runs > MAX_RUNS ? MAX_RUNS : s.runs;
     if (s.scene)
         return run_apart(&s, s.scene, s.scene);
@@ -277,7 +280,7 @@ int main(int argc, char **argv)
         return 1;
     }
     if (scale)
-        return bench_scale(*scale ? scale : NULL, s.folder, s.runs, figure);
+        return bench_scale(*scale ? scale : NULL, s.folder, s.runs);
     int failed = 0;
     for (int i = 0; i < CASES; ++i) {
         if (s.only && strcmp(s.only, cases[i]) != 0)
