@@ -11,7 +11,9 @@
  *
  * The ray caster decides by the signs of three edge functions of each triangle. Neighbours share the rounding of their edge, so
  * nothing slips through edges; but at a vertex to the last bit the edges around it may be rounded all to one side, and then every
- * triangle refuses the ray. A ray that meets nothing although it began within the box of a closed mesh, and not on the way out,
+ * triangle refuses the ray. Such gaps are some roundings wide, but where an edge e points at the ray's origin, v away: its function is
+ * e x v . d, known to u |e| |v|, so its line is off by u |e| / |e x v| |v|, while it is |e x v| / |v|^2 long; gaps as wide as both
+ * are sqrt(u |e| / |v|) wide, 2^-12 [rad] at most. A ray that meets nothing although it began within the box of a closed mesh, and not on the way out,
  * is therefore asked again a few roundings beside (docs/decisions/0022-rays-through-vertices.md). */
 #include "scene/private.h"
 
@@ -142,8 +144,8 @@ bool scene_may_have_slipped(const struct sr_scene *scene, const struct sr_ray *r
 
 sr_vec3 scene_beside(sr_vec3 d, int attempt)
 {
-    static const sr_vec3 ways[SLIP_ATTEMPTS] = {{0.62f, -0.81f, 0.37f}, {-0.93f, -0.29f, 0.71f}, {0.43f, 0.97f, -0.58f}};
-    static const float far[SLIP_ATTEMPTS] = {0x1p-20f, 0x1p-18f, 0x1p-16f}; // [rad]; 16 to 256 roundings
+    static const sr_vec3 ways[SLIP_ATTEMPTS] = {{0.62f, -0.81f, 0.37f}, {-0.93f, -0.29f, 0.71f}, {0.43f, 0.97f, -0.58f}, {-0.51f, 0.38f, -0.88f}};
+    static const float far[SLIP_ATTEMPTS] = {0x1p-20f, 0x1p-17f, 0x1p-14f, 0x1p-11f}; // [rad]; the last: beside a gap of 2^-12
     float size = sr_max(fabsf(d.x), sr_max(fabsf(d.y), fabsf(d.z)));
     return sr_mad(d, far[attempt] * size, ways[attempt]);
 }

@@ -46,7 +46,7 @@ struct instance {
 struct sr_transform instance_transform(const struct instance *instance, float time);
 
 /* A closed mesh in the world, or what is closed of an instance. */
-enum { CLOSED_MAX = 16, SLIP_ATTEMPTS = 3 };
+enum { CLOSED_MAX = 16, SLIP_ATTEMPTS = 4 };
 struct closed {
     struct sr_box box;
     float volume;               // [m^3] of the box

@@ -165,9 +165,11 @@ struct leaks cast_from_inside(const struct closed_mesh *m, enum aim aim, uint64_
         }
         struct sr_ray ray = {.o = o, .d = d, .t_max = INFINITY};
         struct sr_hit hit;
-        out.leaks += !sr_raycast_bare(m->scene, &ray, &hit);
-        if (i % 8 == 0)
-            out.shadows += sr_is_free(m->scene, &ray);
+        bool leaks = !sr_raycast_bare(m->scene, &ray, &hit), shadow_leaks = i % 8 == 0 && sr_is_free(m->scene, &ray);
+        out.leaks += leaks;
+        out.shadows += shadow_leaks;
+        if (leaks || shadow_leaks)
+            out.last = i;
     }
     return out;
 }

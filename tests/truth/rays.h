@@ -27,6 +27,7 @@ void free_closed_mesh(struct closed_mesh *m);
 
 struct leaks {
     uint64_t rays, leaks, shadows; // of the nearest point, and of visibility
+    uint64_t last;                 // number of the last ray that leaked
 };
 struct leaks cast_from_inside(const struct closed_mesh *m, enum aim aim, uint64_t begin, uint64_t end);
 

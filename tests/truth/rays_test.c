@@ -22,6 +22,16 @@ TEST(closed_meshes_leak_no_ray_wherever_they_stand)
     }
 }
 
+/* The one of 10^9 that was found: an edge points at its origin, and nothing was met within 2^-17 [rad] around it. */
+TEST(no_ray_slips_through_an_edge_that_points_at_its_origin)
+{
+    struct closed_mesh m = make_closed_mesh(BODY_SPIKES, 160, 1, 1e3, false);
+    struct leaks l = cast_from_inside(&m, AIM_EDGE, 5522816, 5522817);
+    EXPECT_EQUAL_INT(l.rays, 1);
+    EXPECT_EQUAL_INT(l.leaks + l.shadows, 0);
+    free_closed_mesh(&m);
+}
+
 TEST(nothing_meets_the_surface_that_it_leaves)
 {
     uint64_t points = is_slow_build() ? 200 : 1500;
