@@ -9,7 +9,8 @@
 static const char help[] =
     "Usage: plot-ranks OUT.svg|OUT.png LABEL=TABLE.tsv [LABEL=TABLE.tsv…]\n"
     "\n"
-    "Draws the tables' fourth column (efficiency) over their second (cores). A label that begins with '+' has points and no line.\n";
+    "Draws the tables' fourth column (efficiency) over their second (cores). A label that begins with '+' has points and no line,\n"
+    "in the colour of the one before.\n";
 
 enum { TABLES = 8, ROWS = 256 };
 
@@ -32,13 +33,15 @@ int main(int argc, char **argv)
     static double cores[TABLES][ROWS], efficiency[TABLES][ROWS];
     struct sr_plot_curve curves[TABLES];
     uint32_t count = 0;
+    int colour = 0;
     for (int i = 2; i < argc && count < TABLES; ++i, ++count) {
         char *path = strchr(argv[i], '=');
         if (!path)
             break;
         *path++ = 0;
         bool is_points = argv[i][0] == '+';
-        curves[count] = (struct sr_plot_curve){.label = argv[i] + is_points, .x = cores[count], .y = efficiency[count], .has_points = is_points, .has_no_line = is_points,
+        colour += !is_points || !colour;
+        curves[count] = (struct sr_plot_curve){.label = argv[i] + is_points, .x = cores[count], .y = efficiency[count], .colour = colour, .has_points = is_points, .has_no_line = is_points,
                                                .count = read_table(path, cores[count], efficiency[count])};
         if (!curves[count].count) {
             fprintf(stderr, "plot-ranks: %s: no rows of a table are in it\n", path);

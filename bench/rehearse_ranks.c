@@ -15,7 +15,6 @@
 #include "render_command.h"
 
 #include <mpi.h>
-#include <sched.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -61,10 +60,13 @@ static void work(void *context, int thread)
     (void)thread;
     struct rehearsal *r = context;
     const struct recorded *log = &r->log;
-    struct sr_film_block *blocks = sr_alloc((size_t)r->film->width * r->film->height * sizeof *blocks);
+    uint32_t most = 0;
+    for (uint32_t i = 0; i < log->tiles; ++i)
+        most = log->of_tile[i].width * log->of_tile[i].height > most ? log->of_tile[i].width * log->of_tile[i].height : most;
+    struct sr_film_block *blocks = sr_alloc(most * sizeof *blocks);
     double late_s = 0;
     uint64_t unit;
-    for (size_t i = 0; blocks && i < (size_t)r->film->width * r->film->height; ++i)
+    for (uint32_t i = 0; blocks && i < most; ++i)
         blocks[i] = (struct sr_film_block){.n = 1};
     while (blocks && r->crew->hooks.next(r->crew, &unit)) {
         uint32_t tiles = log->tiles * r->pixels, tile = (uint32_t)(unit % tiles), block = (uint32_t)(unit / tiles);
@@ -76,7 +78,7 @@ static void work(void *context, int thread)
         struct sr_crew_batch *batch = r->batches ? sr_crew_enter(r->batches, &splats) : NULL;
         late_s += nap(u.cost_s - late_s) - u.cost_s;
         while (atomic_load(&r->tile_blocks[tile]) != block)
-            sched_yield();
+            nap(1e-4); // a thread that renders yields; here others want its processor
         if (batch) {
             sr_crew_leave(r->batches, batch, &u, count, blocks, NULL, &(struct sr_render_counts){0});
         } else {
