@@ -132,11 +132,12 @@ sr_spectrum sr_hit_Le(const struct sr_scene *scene, const struct sr_hit *hit, sr
     return light.model->Le(light.self, &hit->point, w, wavelengths);
 }
 
-extern const struct sr_integrator_model sr_integrator_light_path, sr_integrator_bdpt, sr_integrator_caustics, sr_integrator_guided_path, sr_integrator_path, sr_integrator_volpath, sr_integrator_simple_volpath, sr_integrator_simple_path, sr_integrator_random_walk, sr_integrator_ambient_occlusion, sr_integrator_estimator;
+extern const struct sr_integrator_model sr_integrator_light_path, sr_integrator_bdpt, sr_integrator_caustics, sr_integrator_guided_path, sr_integrator_roulette_path, sr_integrator_path, sr_integrator_volpath, sr_integrator_simple_volpath, sr_integrator_simple_path, sr_integrator_random_walk, sr_integrator_ambient_occlusion, sr_integrator_estimator;
 const struct sr_integrator_model *const sr_integrator_models[] = {
     &sr_integrator_path,
     &sr_integrator_volpath,
     &sr_integrator_guided_path,
+    &sr_integrator_roulette_path,
     &sr_integrator_simple_volpath,
     &sr_integrator_simple_path,
     &sr_integrator_random_walk,

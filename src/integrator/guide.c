@@ -26,6 +26,7 @@ enum {
 };
 static const float fine_share = 0.02f;     // of a cell's light in a square, to split it
 static const double doubt = 64;            // records that speak for the mean of all cells
+static const double doubt_returns = 32;    // returns, likewise
 static const double worth = 0.97;          // of the second moment without guide: above, there is none
 const float sr_guide_shares[SR_GUIDE_SHARES] = {0, 0.125f, 0.25f, 0.375f, 0.5f};
 static const double record_most = 0x1p40, unit_of_mean = 0x1p-32; // integers of a record: see sr_guide_create
@@ -152,6 +153,26 @@ static inline uint64_t whole(double x)
     return x > 0 ? (uint64_t)(x < record_most ? x : record_most) : 0;
 }
 
+static void add_place(struct sr_guide_cell *cell, const struct sr_guide_place *place)
+{
+    gain(&cell->records, 1);
+    for (int i = 0; i < 6; ++i) {
+        gain(&cell->place[i], place->of[i]);
+        gain(&cell->place2[i], (uint64_t)place->of[i] * place->of[i]);
+    }
+}
+
+void sr_guide_add_return(struct sr_guide *g, uint32_t number, const struct sr_guide_place *place, int kind, double brought, uint64_t cost)
+{
+    struct sr_guide_cell *cell = &((struct sr_guide_cell *)g->cells.data)[number];
+    struct sr_guide_returns *r = &cell->returns[kind];
+    add_place(cell, place);
+    gain(&r->count, 1);
+    gain(&r->brought, whole(brought * g->per_light));
+    gain(&r->brought2, whole(brought * brought * g->per_noise));
+    gain(&r->cost, cost);
+}
+
 void sr_guide_add(struct sr_guide *g, const struct sr_guide_record *r)
 {
     struct sr_guide_cell *cell = &((struct sr_guide_cell *)g->cells.data)[r->cell];
@@ -164,11 +185,7 @@ void sr_guide_add(struct sr_guide *g, const struct sr_guide_record *r)
     }
     if (!r->is_direction)
         return;
-    gain(&cell->records, 1);
-    for (int i = 0; i < 6; ++i) {
-        gain(&cell->place[i], r->place.of[i]);
-        gain(&cell->place2[i], (uint64_t)r->place.of[i] * r->place.of[i]);
-    }
+    add_place(cell, &r->place);
     uint64_t light = whole(r->light * g->per_light);
     if (light == 0)
         return;
@@ -248,16 +265,33 @@ static uint32_t grow(struct growth *b, const struct sr_guide *g, uint32_t old, u
     return number;
 }
 
-/* What all cells together say of a share, relative to none. */
-static void judge_shares(const struct sr_guide *g, double all[SR_GUIDE_KINDS][SR_GUIDE_SHARES])
+/* What all cells together say. */
+struct verdict {
+    double all[SR_GUIDE_KINDS][SR_GUIDE_SHARES]; // of a share, relative to none
+    struct mean_return {
+        double brought, brought2, cost;
+    } mean[SR_GUIDE_KINDS];
+};
+
+static void judge(const struct sr_guide *g, struct verdict *v)
 {
     const struct sr_guide_cell *cells = g->cells.data;
+    double(*all)[SR_GUIDE_SHARES] = v->all;
+    *v = (struct verdict){0};
     for (int kind = 0; kind < SR_GUIDE_KINDS; ++kind) {
         for (size_t i = 0; i < g->cells.count; ++i)
             for (int k = 0; k < SR_GUIDE_SHARES; ++k)
                 all[kind][k] += (double)cells[i].moments[kind][k];
         for (int k = SR_GUIDE_SHARES; k-- > 0;)
             all[kind][k] = all[kind][0] > 0 ? all[kind][k] / all[kind][0] : -1;
+        struct mean_return *m = &v->mean[kind];
+        double n = 0;
+        for (size_t i = 0; i < g->cells.count; ++i) {
+            const struct sr_guide_returns *r = &cells[i].returns[kind];
+            n += (double)r->count, m->brought += (double)r->brought, m->brought2 += (double)r->brought2, m->cost += (double)r->cost;
+        }
+        n = n > 0 ? n : 1;
+        m->brought /= n, m->brought2 /= n, m->cost /= n;
     }
 }
 
@@ -276,6 +310,18 @@ static float best_share(const struct sr_guide_cell *cell, int kind, const double
         }
     }
     return sr_guide_shares[chosen];
+}
+
+/* What a cell's returns say, and the mean of all where there are few; the cell keeps its share of them. */
+static void learn_returns(struct sr_guide_cell *cell, const struct sr_guide *g, const struct sr_guide_cell *old, int kind, const struct mean_return *all,
+                          int shift)
+{
+    const struct sr_guide_returns *r = &old->returns[kind];
+    double n = (double)r->count + doubt_returns, brought = (double)r->brought + doubt_returns * all->brought,
+           brought2 = (double)r->brought2 + doubt_returns * all->brought2, cost = (double)r->cost + doubt_returns * all->cost;
+    cell->returns[kind] = (struct sr_guide_returns){r->count >> shift, r->brought >> shift, r->brought2 >> shift, r->cost >> shift};
+    cell->mean[kind] = brought > 0 ? (float)(brought / (n * g->per_light)) : 0;
+    cell->worth[kind] = cost > 0 ? brought2 > 0 ? (float)sqrt(brought2 / (cost * g->per_noise)) : 0 : INFINITY;
 }
 
 /* How the records of a cell are spread. */
@@ -331,7 +377,7 @@ static bool copy_nodes(const struct sr_guide *from, struct sr_guide *to)
 
 /* The leaf's cell in the new guide; its sums halved `shift` times. */
 static bool add_cell(struct sr_guide *next, const struct sr_guide *g, const struct sr_guide_cell *old, uint32_t leaf, int shift, float mass,
-                     double all[SR_GUIDE_KINDS][SR_GUIDE_SHARES])
+                     const struct verdict *v)
 {
     struct sr_guide_cell *cell = sr_array_push(&next->cells, sizeof *cell);
     if (!cell)
@@ -344,7 +390,8 @@ static bool add_cell(struct sr_guide *next, const struct sr_guide *g, const stru
         memcpy(cell->place2, old->place2, sizeof cell->place2);
     }
     for (int kind = 0; kind < SR_GUIDE_KINDS; ++kind) {
-        cell->share[kind] = best_share(old, kind, all[kind]);
+        cell->share[kind] = best_share(old, kind, v->all[kind]);
+        learn_returns(cell, g, old, kind, &v->mean[kind], shift + 1);
         cell->measured[kind] = old->measured[kind] >> (shift + 1); // what the coarser density was worth counts half
         for (int k = 0; k < SR_GUIDE_SHARES; ++k)
             cell->moments[kind][k] = old->moments[kind][k] >> (shift + 1);
@@ -357,29 +404,29 @@ static bool add_cell(struct sr_guide *next, const struct sr_guide *g, const stru
 }
 
 static bool refine_leaf(struct sr_guide *next, const struct sr_guide *g, const struct sr_guide_cell *old, struct spread spread, uint32_t leaf, int shift,
-                        float mass, double all[SR_GUIDE_KINDS][SR_GUIDE_SHARES])
+                        float mass, const struct verdict *v)
 {
     if (spread.records < SPLIT_RECORDS || shift >= MOST_SPLITS || next->nodes.count >= 2 * MOST_CELLS)
-        return add_cell(next, g, old, leaf, shift, mass, all);
+        return add_cell(next, g, old, leaf, shift, mass, v);
     struct node split = {.child = (uint32_t)next->nodes.count};
     struct spread other = halve(&spread, &split);
     if (!sr_array_push(&next->nodes, sizeof split) || !sr_array_push(&next->nodes, sizeof split))
         return false;
     ((struct node *)next->nodes.data)[leaf] = split;
-    return refine_leaf(next, g, old, spread, split.child, shift + 1, mass, all) && refine_leaf(next, g, old, other, split.child + 1, shift + 1, mass, all);
+    return refine_leaf(next, g, old, spread, split.child, shift + 1, mass, v) && refine_leaf(next, g, old, other, split.child + 1, shift + 1, mass, v);
 }
 
 bool sr_guide_refine(struct sr_guide *g)
 {
     struct sr_guide next = {.bounds = g->bounds, .scale = g->scale, .per_light = g->per_light, .per_noise = g->per_noise};
-    double all[SR_GUIDE_KINDS][SR_GUIDE_SHARES] = {{0}};
-    judge_shares(g, all);
+    struct verdict v;
+    judge(g, &v);
     bool is_done = copy_nodes(g, &next);
     for (uint32_t i = 0; is_done && i < g->nodes.count; ++i) {
         const struct node *n = &((const struct node *)g->nodes.data)[i];
         const struct sr_guide_cell *cell = sr_guide_cell(g, n->cell);
         if (!n->child)
-            is_done = refine_leaf(&next, g, cell, spread_of(cell), i, 0, weigh(g, cell->root, 4 * SR_PI), all);
+            is_done = refine_leaf(&next, g, cell, spread_of(cell), i, 0, weigh(g, cell->root, 4 * SR_PI), &v);
     }
     if (!is_done) {
         free_arrays(&next);

@@ -13,7 +13,15 @@
 enum { SR_GUIDE_SHARES = 5, SR_GUIDE_KINDS = 2 };
 extern const float sr_guide_shares[SR_GUIDE_SHARES];
 
+/* What paths have brought that went on from such places, for what they carried, and what that took. */
+struct sr_guide_returns {
+    uint64_t count, brought, brought2, cost;
+};
+
 struct sr_guide_cell {
+    struct sr_guide_returns returns[SR_GUIDE_KINDS];
+    float mean[SR_GUIDE_KINDS];  // of what a path brings
+    float worth[SR_GUIDE_KINDS]; // sqrt(E[brought^2] / E[cost]); infinite: not known at all
     uint32_t root;               // of the tree of squares
     bool has_light;              // else there is no density
     float share[SR_GUIDE_KINDS]; // [1] that has been chosen for Lambert's surfaces, and for all others
@@ -30,7 +38,7 @@ struct sr_guide_place {
 };
 
 /* bounds: of places. light, noise: the expected values of a record's light and noise, which the integers are sized by: the sums
- * hold 2^24 records, whatever they are. NULL: no memory. */
+ * hold 2^24 records, whatever they are. Where returns are added, the two are those of what one brings, and of its square. NULL: no memory. */
 struct sr_guide *sr_guide_create(const struct sr_box *bounds, double light, double noise);
 void sr_guide_destroy(struct sr_guide *guide);
 
@@ -55,6 +63,8 @@ struct sr_guide_record {
     float pdf, pdf_bsdf, pdf_guide; // pdf: as it was drawn
 };
 void sr_guide_add(struct sr_guide *guide, const struct sr_guide_record *record);
+/* A path that has gone on from a place. A guide takes records or returns, not both. */
+void sr_guide_add_return(struct sr_guide *guide, uint32_t cell, const struct sr_guide_place *place, int kind, double brought, uint64_t cost);
 
 /* Makes densities and shares of the sums, and finer cells and squares where there is enough to fill them. false: no memory, the guide
  * is as it was. */

@@ -109,3 +109,41 @@ TEST(guides_do_not_depend_on_the_order_of_records)
     sr_guide_destroy(a);
     sr_guide_destroy(b);
 }
+
+/* Lambert's surfaces with x < 0 bring 0 or 8, by half each, for 2; those with x > 0 always 1 for 4; others are never met. */
+static struct sr_guide *returned(bool is_reversed)
+{
+    struct sr_box bounds = {{-1, 0, 0}, {1, 1, 1}};
+    struct sr_guide *g = sr_guide_create(&bounds, 2.5, 16.5);
+    EXPECT(g != NULL);
+    for (uint32_t round = 0; round < ROUNDS; ++round) {
+        uint32_t n = 2000u << round;
+        for (uint32_t i = 0; i < n; ++i) {
+            struct sr_rng rng = sr_rng_seed(is_reversed ? n - 1 - i : i, round);
+            sr_vec3 p = {2 * sr_rng_float(&rng) - 1, sr_rng_float(&rng), sr_rng_float(&rng)}, up = {0, 1, 0};
+            struct sr_guide_place place = sr_guide_place(g, p, up);
+            double brought = p.x > 0 ? 1 : sr_rng_float(&rng) < 0.5f ? 8 : 0;
+            sr_guide_add_return(g, sr_guide_find(g, &place), &place, 0, brought, p.x > 0 ? 4 : 2);
+        }
+        EXPECT(sr_guide_refine(g));
+    }
+    return g;
+}
+
+TEST(guides_know_what_going_on_brings_and_costs)
+{
+    struct sr_guide *g = returned(false), *other = returned(true);
+    const struct sr_guide_cell *left = cell_at(g, -0.5f), *right = cell_at(g, 0.5f);
+    EXPECT(sr_guide_cell_count(g) > 8);
+    EXPECT_RELATIVE(left->mean[0], 4, 0.1);
+    EXPECT_RELATIVE(left->worth[0], sqrt(32.0 / 2), 0.1);
+    EXPECT_RELATIVE(right->mean[0], 1, 0.15);
+    EXPECT_RELATIVE(right->worth[0], sqrt(1.0 / 4), 0.3); // where few have been, the mean of all has a say
+    EXPECT(isinf(left->worth[1]) && left->mean[1] == 0);
+    for (float x = -0.99f; x < 1; x += 0.05f) {
+        EXPECT(cell_at(g, x)->mean[0] == cell_at(other, x)->mean[0]);
+        EXPECT(cell_at(g, x)->worth[0] == cell_at(other, x)->worth[0]);
+    }
+    sr_guide_destroy(g);
+    sr_guide_destroy(other);
+}
