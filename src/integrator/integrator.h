@@ -192,10 +192,8 @@ sr_spectrum sr_hit_Le(const struct sr_scene *scene, const struct sr_hit *hit, sr
 /* Power heuristic of two densities (Veach 1997, beta = 2), safe against overflow. */
 static inline float sr_mis_weight(float pdf, float other)
 {
-    if (isinf(pdf))
-        return 1;
-    float a = pdf * pdf, b = other * other;
-    return isinf(a) ? 1 : a + b > 0 ? a / (a + b) : 0;
+    float q = other / pdf, weight = 1 / (1 + q * q);
+    return weight >= 0 ? weight : pdf > 0; // 0 / 0: nothing; both infinite: all
 }
 
 #endif

@@ -58,10 +58,10 @@ static inline uint32_t seed_of(const struct sr_sampler *sampler, uint32_t group)
     return sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu;
 }
 
-static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
-                          struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
+/* has_footprints, has_subsurface: constants where the compiler is to leave out what they ask for. */
+SR_INLINE sr_spectrum follow(const struct sr_path *path, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
+                             struct sr_wavelengths *w, struct sr_hit *first, bool has_footprints, bool has_subsurface, struct sr_worker *worker)
 {
-    const struct sr_path *path = self;
     const struct sr_lights *lights = sr_scene_lights(scene);
     struct sr_ray ray = start->ray;
     sr_spectrum L = SR_BLACK;   // radiance gathered so far                     [W m^-2 sr^-1 nm^-1]
@@ -69,7 +69,6 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
     float pdf = INFINITY;       // density that chose ray.d                     [1/sr]; infinite: no light sampling could compete
     float eta_scale = 1;        // what refraction has made of beta, and will undo [1]
     bool is_scattered = false;  // by more than mirrors and clear glass
-    bool has_footprints = sr_scene_has_footprints(scene), has_subsurface = path->subsurface && sr_scene_has_subsurface(scene);
     float width = 0;            // of the path at its last surface              [m]
     float spread = has_footprints ? 0.5f * (sr_length(start->dddx) + sr_length(start->dddy)) : 0; // [1]
     struct sr_hit hits[2];      // where the path is now, and where it was scattered last
@@ -182,6 +181,16 @@ static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const 
             beta *= 1 / survive;
         }
     }
+}
+
+static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
+                          struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
+{
+    const struct sr_path *path = self;
+    bool has_footprints = sr_scene_has_footprints(scene), has_subsurface = path->subsurface && sr_scene_has_subsurface(scene);
+    if (SR_LIKELY(!first && !has_footprints && !has_subsurface))
+        return follow(path, scene, start, sampler, w, NULL, false, false, worker);
+    return follow(path, scene, start, sampler, w, first, has_footprints, has_subsurface, worker);
 }
 
 bool sr_path_enters_bodies(const void *self)

@@ -259,14 +259,15 @@ SR_INLINE bool sr_is_outward(const struct sr_point *x, sr_vec3 w)
 /* An origin for a ray that leaves x toward w: off the surface by no more than the error of p, never through it. */
 SR_INLINE sr_vec3 sr_point_offset(const struct sr_point *x, sr_vec3 w)
 {
+    typedef float quad __attribute__((vector_size(16)));
+    typedef int32_t quad_bits __attribute__((vector_size(16)));
     float d = fabsf(x->n.x) * x->p_error.x + fabsf(x->n.y) * x->p_error.y + fabsf(x->n.z) * x->p_error.z;
-    sr_vec3 offset = sr_scale(sr_dot(w, x->n) < 0 ? -d : d, x->n);
-    sr_vec3 o = sr_add(x->p, offset);
+    quad offset = (sr_dot(w, x->n) < 0 ? -d : d) * (quad){x->n.x, x->n.y, x->n.z, 0};
+    quad o = (quad){x->p.x, x->p.y, x->p.z, 0} + offset;
     // away from p by at least one more ulp, so that rounding never brings it back
-    float *c = &o.x, *s = &offset.x;
-    for (int i = 0; i < 3; ++i)
-        c[i] += copysignf(fabsf(c[i]) * 0x1p-23f + 0x1p-126f, s[i]);
-    return o;
+    quad ulp = (quad)((quad_bits)o & INT32_MAX) * 0x1p-23f + 0x1p-126f;
+    o += (quad)((quad_bits)ulp | ((quad_bits)offset & INT32_MIN));
+    return (sr_vec3){o[0], o[1], o[2]};
 }
 
 /* ---- angles ---- */

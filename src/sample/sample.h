@@ -74,6 +74,7 @@ uint32_t sr_sampler_draw_ahead(const struct sr_sampler *s, uint32_t count, sr_u8
  * index the same way makes groups independent (B. Burley, Practical Hash-based Owen Scrambling, 2020). The shuffle stays
  * within blocks of 65536, so that smaller indices need two look-ups. */
 typedef uint32_t sr_u4_bits __attribute__((vector_size(16)));
+typedef uint32_t sr_u8_bits __attribute__((vector_size(32)));
 extern const sr_u4_bits sr_sobol_table[4][256];
 extern const uint8_t sr_reversed_byte[256];
 sr_u4_bits sr_sobol_high(uint32_t high_half, uint32_t *seed); // what an index >= 65536 adds
@@ -100,6 +101,12 @@ SR_INLINE uint32_t sr_index_begin(uint32_t sample) // < 65536: what all groups m
     return i ^ i * 0x3d20adeau;
 }
 SR_INLINE uint32_t sr_index_shuffle(uint32_t i, uint32_t seed)
+{
+    i = (i + seed) * (seed >> 16 | 1);
+    i ^= i * 0x05526c56u;
+    return i ^ i * 0x53a22864u;
+}
+SR_INLINE sr_u8_bits sr_index_shuffle8(sr_u8_bits i, uint32_t seed) // the same, of eight indices
 {
     i = (i + seed) * (seed >> 16 | 1);
     i ^= i * 0x05526c56u;
@@ -147,7 +154,6 @@ static inline sr_u4 sr_sample4(const struct sr_sampler *s, uint32_t group)
 }
 
 /* Eight numbers from two points of a net, each scrambled in its own way. */
-typedef uint32_t sr_u8_bits __attribute__((vector_size(32)));
 SR_INLINE sr_u8 sr_scramble8(sr_u4_bits point0, sr_u4_bits point1, sr_u8_bits add, sr_u8_bits multiply)
 {
     typedef int32_t sr_i8 __attribute__((vector_size(32)));
@@ -161,9 +167,16 @@ SR_INLINE sr_u8 sr_scramble8(sr_u4_bits point0, sr_u4_bits point1, sr_u8_bits ad
     sr_bytes32 b = (sr_bytes32)x;
     x = (sr_u8_bits)__builtin_shufflevector(b, b, 3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12, 19, 18, 17, 16, 23, 22, 21, 20, 27, 26, 25, 24,
                                             31, 30, 29, 28);
+#ifdef __AVX2__ // the bits of a byte by two looks into a table of sixteen
+    typedef char sr_chars32 __attribute__((vector_size(32)));
+    const sr_chars32 mirrored = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15, 0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
+    x = (sr_u8_bits)__builtin_ia32_pshufb256(mirrored, (sr_chars32)(x & 0x0f0f0f0fu)) << 4 |
+        (sr_u8_bits)__builtin_ia32_pshufb256(mirrored, (sr_chars32)(x >> 4 & 0x0f0f0f0fu));
+#else
     x = (x & 0x0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0fu);
     x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
     x = (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
+#endif
     return __builtin_convertvector((sr_i8)(x >> 8), sr_u8) * 0x1p-24f;
 }
 

@@ -75,15 +75,17 @@ uint32_t sr_sampler_draw_ahead(const struct sr_sampler *s, uint32_t count, sr_u8
 {
     if (s->kind == SR_SAMPLER_INDEPENDENT || (s->sample + SR_AHEAD) >> 16)
         return 0;
-    uint32_t begun[SR_AHEAD], i[2][SR_AHEAD];
+    sr_u8_bits begun;
     for (uint32_t k = 0; k < SR_AHEAD; ++k)
         begun[k] = sr_index_begin(s->sample + k);
     for (uint32_t pair = 0; pair < SR_AHEAD_GROUPS / 2; ++pair) {
         struct sr_pair_seeds p = sr_pair_seeds(s->key, 2 * pair);
         sr_u8_bits multiply = p.lane >> 16 | 1;
-        for (int half = 0; half < 2; ++half)
-            for (uint32_t k = 0; k < SR_AHEAD; ++k) // one vector
-                i[half][k] = sr_index_shuffle(begun[k], p.seed[half]);
+        uint32_t i[2][SR_AHEAD];
+        for (int half = 0; half < 2; ++half) {
+            sr_u8_bits shuffled = sr_index_shuffle8(begun, p.seed[half]);
+            memcpy(i[half], &shuffled, sizeof shuffled);
+        }
         for (uint32_t k = 0; k < count; ++k)
             out[pair * SR_AHEAD + k] = sr_scramble8(sr_sobol_point(i[0][k]), sr_sobol_point(i[1][k]), p.lane, multiply);
     }

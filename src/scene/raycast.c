@@ -2,9 +2,6 @@
 /* The two operators of the theory: raycast(p, w), the nearest surface point; visible(p, p'), the visibility function V. */
 #include "scene/private.h"
 
-/* A shadow ray ends this much before its target, which lies on a surface itself. */
-#define SHADOW_SHARE (1 - 1e-4f)
-
 static void fill_ray(struct RTCRay *r, sr_vec3 o, sr_vec3 d, float time, float t_max)
 {
     typedef float f4 __attribute__((vector_size(16)));
@@ -61,7 +58,7 @@ static bool is_free(const struct sr_scene *scene, const struct sr_ray *ray, sr_v
     return r.tfar >= 0;
 }
 
-static inline bool raycast(const struct sr_scene *scene, const struct sr_ray *ray, bool bare, struct sr_hit *hit)
+SR_INLINE bool raycast(const struct sr_scene *scene, const struct sr_ray *ray, bool bare, struct sr_hit *hit)
 {
     struct RTCRayHit rh;
     fill_ray(&rh.ray, ray->o, ray->d, ray->time, ray->t_max);
@@ -123,15 +120,6 @@ bool sr_raycast(const struct sr_scene *scene, const struct sr_ray *ray, struct s
 bool sr_raycast_bare(const struct sr_scene *scene, const struct sr_ray *ray, struct sr_hit *hit)
 {
     return raycast(scene, ray, true, hit);
-}
-
-struct sr_ray sr_shadow_ray(const struct sr_point *x, const struct sr_light_sample *s)
-{
-    sr_vec3 o = sr_point_offset(x, s->wi);
-    bool is_outward = sr_is_outward(x, s->wi);
-    if (isinf(s->distance))
-        return (struct sr_ray){.o = o, .d = s->wi, .time = x->time, .t_max = INFINITY, .is_outward = is_outward};
-    return (struct sr_ray){.o = o, .is_outward = is_outward, .d = sr_sub(s->p, o), .time = x->time, .t_max = SHADOW_SHARE};
 }
 
 bool sr_is_free(const struct sr_scene *scene, const struct sr_ray *ray)

@@ -75,7 +75,13 @@ bool sr_raycast_bare(const struct sr_scene *scene, const struct sr_ray *ray, str
 /* The visibility function V between x and the point (or, at infinite distance, the direction) of a light sample. */
 bool sr_visible(const struct sr_scene *scene, const struct sr_point *x, const struct sr_light_sample *s);
 /* The same in two steps: the segment (direction not of unit length, t from 0 to t_max), and whether it is free. */
-struct sr_ray sr_shadow_ray(const struct sr_point *x, const struct sr_light_sample *s);
+static inline struct sr_ray sr_shadow_ray(const struct sr_point *x, const struct sr_light_sample *s)
+{
+    const float share = 1 - 1e-4f; // it ends this much before its target, which lies on a surface itself
+    sr_vec3 o = sr_point_offset(x, s->wi);
+    bool is_outward = sr_is_outward(x, s->wi), is_far = isinf(s->distance);
+    return (struct sr_ray){.o = o, .is_outward = is_outward, .d = is_far ? s->wi : sr_sub(s->p, o), .time = x->time, .t_max = is_far ? INFINITY : share};
+}
 bool sr_is_free(const struct sr_scene *scene, const struct sr_ray *segment);
 /* A ray that leaves x toward w. */
 static inline struct sr_ray sr_leave(const struct sr_point *x, sr_vec3 w)
