@@ -75,7 +75,7 @@ void sr_block_tree_done(struct sr_block_tree *t);
 /* Joins all nodes, from the right, into the first one: the sum of the block where all its samples are there. */
 void sr_block_tree_fold(struct sr_block_tree *t);
 
-/* ---- render.c ---- */
+/* ---- pass.c ---- */
 
 struct sr_keeper;
 struct sr_render_pass {
@@ -93,6 +93,8 @@ struct sr_render_pass {
 };
 /* Adds to the report. SR_CANCELLED: the film holds what there is. */
 sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render_pass *pass, struct sr_render_report *report, struct sr_error *error);
+
+/* ---- unit.c ---- */
 
 /* Whether the sample x, y, replicate, number comes before the other, in picture order. */
 bool sr_render_is_earlier(const uint32_t a[4], const uint32_t b[4]);

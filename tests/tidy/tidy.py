@@ -38,6 +38,9 @@ PRINT_EXIT = re.compile(r"(?<![\w_])(printf|fprintf|puts|perror|exit|abort|_exit
 INCLUDE = re.compile(r'\s*#\s*include\s+["<]([^">]+)[">]')
 FLOAT_MEMBER = re.compile(r"^\s*(?:const\s+)?(?:float|double)\s+(?!.*\()[^;]*;")
 CODE = {".c", ".h", ".cmake", ".sh", ".py"}
+MOST_LINES = 600
+# A file is long for its tables of numbers, whose lines do not count, never for its code.
+NUMBERS = re.compile(r"[\s{}(),;+\-.\dxXeEa-fA-FuUlL]*")
 
 
 def tracked(root):
@@ -87,6 +90,9 @@ def check(root):
         head = "\n".join(text.splitlines()[:3])
         if "SPDX-License-Identifier: MIT" not in head:
             offences.append(f"{rel}:1: the SPDX line is missing")
+        lines = sum(1 for line in text.splitlines() if not (line.strip() and NUMBERS.fullmatch(line) and re.search(r"\d", line)))
+        if lines > MOST_LINES:
+            offences.append(f"{rel}: has {lines} lines besides tables of numbers, {MOST_LINES} are the most")
         if not text.endswith("\n") or text.endswith("\n\n"):
             offences.append(f"{rel}: ends without exactly one line end")
         if "\r" in text:
@@ -136,6 +142,7 @@ def self_test(root):
         "src/bsdf/g.c": "/* SPDX-License-Identifier: MIT */\n#include <embree3/rtcore.h>\n",
         "src/bsdf/h.c": "/* SPDX-License-Identifier: MIT */\nint x; \n",
         "src/bsdf/i.c": "/* SPDX-License-Identifier: MIT */\nint x;",
+        "src/bsdf/k.c": "/* SPDX-License-Identifier: MIT */\n" + 600 * "int f(void);\n",
         "include/steradian/j.h": "/* SPDX-License-Identifier: MIT */\nstruct s {\n    float bare;\n};\n",
     }
     for name, text in planted.items():
