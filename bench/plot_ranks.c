@@ -20,7 +20,7 @@ static uint32_t read_table(const char *path, double *cores, double *efficiency)
     char line[512];
     uint32_t rows = 0;
     while (file && rows < ROWS && fgets(line, sizeof line, file))
-        rows += sscanf(line, "%*d %lf %*f %lf", &cores[rows], &efficiency[rows]) == 2;
+        rows += sscanf(line, "%*f %lf %*f %lf", &cores[rows], &efficiency[rows]) == 2;
     if (file)
         fclose(file);
     for (uint32_t i = 0; i < rows; ++i)

@@ -77,6 +77,24 @@ def one_for_a_node(p):
     print("one scene for a node: 2 of 3 ranks wait")
 
 
+def rehearsal(p):
+    """The simulator's time, messages and bytes are those of real deals, where the machine has time for them."""
+    folder = pathlib.Path(p.together).parent
+    if not (folder / "rehearse-ranks").exists():
+        return
+    log = p.folder / "rehearsal.tsv"
+    lines = ["%d\t%d\t%d\t%d\t16\t16\t0\t%.6f\t0" % (t, b, 16 * (t % 8), 16 * (t // 8), 0.002 + 0.0001 * (t * 37 % 64)) for t in range(64) for b in range(4)]
+    log.write_text("\n".join(lines) + "\n")
+    real = p.run([*p.mpirun, "-n", "3", str(folder / "rehearse-ranks"), str(log)]).split("\t")
+    told = p.run([str(folder / "simulate-ranks"), str(log), "--ranks", "3", "--tsv"]).splitlines()[1].split("\t")
+    (time_s, messages, sent_B), (told_s, told_messages, told_B) = ([float(row[i]) for i in (2, 4, 5)] for row in (real, told))
+    expect(time_s > 0.97 * told_s, f"{time_s} s, though {told_s} s were foretold")
+    expect(0.6 * told_B < sent_B < 1.4 * told_B, f"{sent_B} bytes, {told_B} foretold")
+    if time_s < 1.1 * told_s:
+        expect(abs(messages - told_messages) <= 0.2 * told_messages, f"{messages} messages, {told_messages} foretold")
+    print(f"a rehearsal: {time_s:.3f} s, {told_s:.3f} s foretold; {messages:.0f} messages, {told_messages:.0f}; {sent_B / 1e6:.2f} MB, {told_B / 1e6:.2f} MB")
+
+
 def refusals(p):
     small = ["--resolution", "16,16", "--spp", "4", "-o", "no.exr", "--each-rank", "--threads", "1"]
 
@@ -144,6 +162,7 @@ def main():
         try:
             same_bytes(p)
             one_for_a_node(p)
+            rehearsal(p)
             refusals(p)
             lost_rank(p, is_slow)
         except Wrong as wrong:
