@@ -12,7 +12,7 @@
  * The ray caster decides by the signs of three edge functions of each triangle. Neighbours share the rounding of their edge, so
  * nothing slips through edges; but at a vertex to the last bit the edges around it may be rounded all to one side, and then every
  * triangle refuses the ray. Such gaps are some roundings wide, but where an edge e points at the ray's origin, v away: its function is
- * e x v . d, known to u |e| |v|, so its line is off by u |e| / |e x v| |v|, while it is |e x v| / |v|^2 long; gaps as wide as both
+ * e x v . d, known to u |e| |v|, so its line is off by u |e| |v| / |e x v|, while it is |e x v| / |v|^2 long; gaps as wide as both
  * are sqrt(u |e| / |v|) wide, 2^-12 [rad] at most. A ray that meets nothing although it began within the box of a closed mesh, and not on the way out,
  * is therefore asked again a few roundings beside (docs/decisions/0022-rays-through-vertices.md). */
 #include "scene/private.h"
