@@ -5,8 +5,7 @@
 #include "lab/lab.h"
 #include "test.h"
 
-// each wavelength tries spectra of its own, and finding is luck: eight sets find all with eight wavelengths
-enum { SETS = SR_LAMBDA_COUNT == 8 ? 8 : 16 };
+enum { SETS = SR_LAMBDA_COUNT < 8 ? 16 : 8 }; // each wavelength tries spectra of its own
 static const struct sr_certificate_options options = {.sets = SETS, .samples = 16384, .seed = 5, .significance = 1e-6};
 
 static const struct sr_check *find(const struct sr_certificate *c, const char *name)
@@ -18,17 +17,22 @@ static const struct sr_check *find(const struct sr_certificate *c, const char *n
 }
 
 /* The certificate fails, by this check, with this in its words. */
-static void expect_failure(const struct sr_bsdf_model *m, const char *check, const char *words)
+static void expect_failure_of(const struct sr_bsdf_model *m, const struct sr_certificate_options *o, const char *check, const char *words)
 {
     struct sr_certificate c;
     struct sr_error error = {0};
-    EXPECT(sr_certify_model(m, &options, &c, &error) == SR_OK);
+    EXPECT(sr_certify_model(m, o, &c, &error) == SR_OK);
     const struct sr_check *k = find(&c, check);
     if (c.passed || k->verdict != SR_FAILED)
         test_fail(__FILE__, __LINE__, "%s: %s was not refused: measured %g, limit %g: %s", m->name, check, k->measured,
                   k->limit, k->text);
     if (!strstr(k->text, words))
         test_fail(__FILE__, __LINE__, "%s: %s says \"%s\", not \"%s\"", m->name, check, k->text, words);
+}
+
+static void expect_failure(const struct sr_bsdf_model *m, const char *check, const char *words)
+{
+    expect_failure_of(m, &options, check, words);
 }
 
 static void expect_pass(const struct sr_bsdf_model *m, const struct sr_certificate_options *o)
@@ -296,7 +300,9 @@ TEST(broken_wards_model_does_not_tell_that_it_has_no_bound)
 {
     struct sr_bsdf_model m = sr_bsdf_ward;
     m.largest_albedo = 0;
-    expect_failure(&m, "energy", "E = ");
+    struct sr_certificate_options o = options;
+    o.samples *= SR_LAMBDA_COUNT > 8 ? 4 : 1; // few directions gain energy: which are tried is luck, and changes with the wavelengths
+    expect_failure_of(&m, &o, "energy", "E = ");
 }
 
 static sr_spectrum f_without_eta2(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode)
