@@ -95,7 +95,7 @@ SR_INLINE v8 importance(const struct sr_light_tree_node *b, sr_vec3 p, sr_vec3 n
     v8 d2 = dx * dx + dy * dy + dz * dz;
     v8 power = load(b->power), r = load(b->radius);
     v8i is_inside = d2 <= r * r;
-    v8 reach2 = larger(d2, r * r + 1e-18f);
+    v8 reach2 = larger(larger(d2, r * r), zero + 1e-28f); // [m^2] no length: a lamp in the very origin has neither
     v8 cos_b = root(larger(d2 - r * r, zero)); // times d, like all that follow
 
     const float unit = 1 / 32767.0f;

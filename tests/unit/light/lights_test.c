@@ -172,6 +172,47 @@ TEST(probabilities_of_points_add_up_to_1)
     }
 }
 
+/* Nothing in the tree has a length of its own: the same lamps, receivers and numbers in scenes of 2 mm and 2000 km. Some receivers are within
+ * lamps, some lamps are small. */
+TEST(picks_do_not_depend_on_the_size_of_the_scene)
+{
+    enum { N = 200, PICKS = 4000 };
+    static uint32_t first[PICKS];
+    static float first_pmf[PICKS];
+    static const int exponents[] = {0, -10, 10, 20};
+    for (int k = 0; k < 4; ++k) {
+        struct sr_rng rng = sr_rng_seed(5, 6);
+        float scale = exp2f((float)exponents[k]);
+        struct sr_light lights[N];
+        struct sr_light_emission *e = sr_arena_alloc(&scenery_arena, sizeof *e);
+        struct scenery_quad *quads = sr_arena_alloc(&scenery_arena, N * sizeof *quads);
+        struct sr_error error = {0};
+        *e = scenery_emission();
+        EXPECT(sr_light_emission_prepare(e, 1, &scenery_arena, &error) == SR_OK);
+        for (uint32_t i = 0; i < N; ++i) {
+            struct scenery_quad q = random_quad(&rng, 1, 0.2f);
+            float size = i % 3 ? scale : scale * 0.01f;
+            quads[i] = (struct scenery_quad){sr_scale(scale, q.corner), sr_scale(size, q.ex), sr_scale(size, q.ey)};
+            lights[i] = scenery_quad_light(quads, i, e);
+        }
+        struct sr_lights tree = build(lights, N, SR_LIGHTS_BVH);
+        for (uint32_t i = 0; i < PICKS; ++i) {
+            struct sr_point x = random_receiver(&rng, 1, i % 2);
+            x.p = i % 5 ? sr_scale(scale, x.p) : quads[i % N].corner;
+            uint32_t index = UINT32_MAX;
+            float pmf = 0, u = sr_rng_float(&rng);
+            sr_lights_pick(&tree, &x, u, &index, &pmf);
+            if (k == 0) {
+                first[i] = index;
+                first_pmf[i] = pmf;
+            }
+            if (index != first[i] || pmf != first_pmf[i]) // to the last bit
+                test_fail(__FILE__, __LINE__, "scaled by 2^%d, receiver %u: lamp %u with %.9g, expected %u with %.9g", exponents[k], i, index, (double)pmf, first[i],
+                          (double)first_pmf[i]);
+        }
+    }
+}
+
 TEST(picks_are_as_frequent_as_their_probabilities)
 {
     enum { N = 150, DRAWS = 200000 };
