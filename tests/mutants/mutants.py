@@ -34,13 +34,13 @@ MUTANTS = [
     Mutant("lights that the surface meets are counted in full, and sampled as well", "integrator/path.c",
            "return density > 0 ? sr_mis_weight(pdf, sr_lights_pmf(lights, from, light) * density) : 1;",
            "(void)lights, (void)from, (void)pdf, (void)light, (void)density; return 1;", "analytic sources* [B8]"),
-    Mutant("the weights of two strategies do not add up to 1", "integrator/integrator.h", "a + b > 0 ? a / (a + b) : 0;", "a + b > 0 ? a / (a + 1.01f * b) : 0;",
+    Mutant("the weights of two strategies do not add up to 1", "integrator/integrator.h", "weight = 1 / (1 + q * q);", "weight = 1 / (1 + 1.01f * q * q);",
            "analytic sources* [B8]"),
     Mutant("who survives the lot does not carry the others' share", "integrator/path.c", "beta *= 1 / survive;", ";", "analytic enclosures* [D1]"),
     Mutant("rays leave triangles by the error of the point alone", "shape/trianglemesh.c", "return sr_min(32 * SR_MACHINE_EPSILON * of_normal,",
            "return sr_min(0 * of_normal,", "truth nothing_meets_the_floor_that_it_leaves"),
-    Mutant("shadows end at half of the way to the lamp", "scene/raycast.c", ".d = sr_sub(s->p, o), .time = x->time, .t_max = SHADOW_SHARE}",
-           ".d = sr_sub(s->p, o), .time = x->time, .t_max = SHADOW_SHARE / 2}", "validate screened_0.75"),
+    Mutant("shadows end at half of the way to the lamp", "scene/scene.h", ".t_max = is_far ? INFINITY : share};",
+           ".t_max = is_far ? INFINITY : share / 2};", "validate screened_0.75"),
     Mutant("light from below the horizon is not cut off", "bsdf/bsdf.h", "bool is_reflected = sr_same_hemisphere(wo, wi);", "bool is_reflected = true;",
            "analytic sources* [B6]"),
     # what is learned
@@ -116,7 +116,7 @@ MUTANTS = [
     Mutant("a checksum does not know where its block belongs", "store/write.c", "crc32(crc32(0, (const Bytef *)place, sizeof place), data, (uInt)size)",
            "crc32((uLong)(place[0] & 0), data, (uInt)size)", "unit_store blocks_in*"),
     Mutant("gaps are not looked at", "store/read.c", "if (bytes[i])", "if (bytes[i] && n == 0)", "unit_store every_flipped*"),
-    Mutant("a resumed render takes a block twice", "render/render.c", "> run->pass->blocks_before + block - run->first_block;",
+    Mutant("a resumed render takes a block twice", "render/unit.c", "> run->pass->blocks_before + block - run->first_block;",
            "> run->pass->blocks_before + block - run->first_block + 1;", "agree resumed_sums*"),
 ]
 
