@@ -155,9 +155,11 @@ sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render
         sr_arena_free(&arena);
         return error->status;
     }
-    run.rays = counted.rays;
-    run.shadow_rays = counted.shadow_rays;
-    run.vertices = counted.vertices;
+    if (!is_resumed) { // else the checkpoint has counted them
+        run.rays = counted.rays;
+        run.shadow_rays = counted.shadow_rays;
+        run.vertices = counted.vertices;
+    }
     sr_gate_begin(&run);
     struct sr_keeper_view view = sr_gate_view(&run);
     struct sr_keeper_watch *watch = sr_keeper_watch_begin(pass->keeper, &view);
