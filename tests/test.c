@@ -2,6 +2,8 @@
 #define _POSIX_C_SOURCE 200809L
 #include "test.h"
 
+#include "temporary.h"
+
 #include <setjmp.h>
 #include <time.h>
 #include <unistd.h>
@@ -117,9 +119,9 @@ size_t test_address_space_B(void)
 
 const char *test_folder(void)
 {
-    static char folder[] = "/tmp/steradian-test-XXXXXX";
+    static char folder[512];
     static bool made;
-    if (!made && !mkdtemp(folder))
+    if (!made && !make_temporary_folder("test", folder))
         abort();
     made = true;
     return folder;

@@ -8,6 +8,7 @@
 #include "import/import.h"
 #include "render/render.h"
 #include "store/layout.h"
+#include "temporary.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -115,10 +116,10 @@ static void make_seed(int number, struct seed *s)
     struct sr_error error = {0};
     struct sr_render_part *part;
     struct sr_render_report report;
-    char folder[] = "/tmp/steradian-fuzz-XXXXXX", path[64], *bytes;
+    char folder[512], path[600], *bytes;
     size_t size;
     open_file(scene, sizeof scene - 1);
-    if (!mkdtemp(folder) || sr_import_pbrt(NAME, &options, &r, NULL, &error) != SR_OK)
+    if (!make_temporary_folder("fuzz", folder) || sr_import_pbrt(NAME, &options, &r, NULL, &error) != SR_OK)
         exit(4);
     snprintf(path, sizeof path, "%s/part", folder);
     struct sr_render_job job = {.scene = r.scene, .sensor = r.sensor, .filter = r.filter, .integrator = r.integrator, .film = r.film, .sampler = r.sampler, .spp = 4,
