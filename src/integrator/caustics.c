@@ -13,6 +13,7 @@
  * which shares nothing, is read by path tracing alone. */
 #include "integrator/path.h"
 #include "integrator/photon_map.h"
+#include "integrator/shade.h"
 #include "integrator/vertices.h"
 
 struct caustics {
@@ -114,20 +115,16 @@ static sr_spectrum walk(const struct caustics *m, const struct sr_scene *scene, 
         }
         if (!is_hit || (x.material && bounce == m->max_depth))
             return L;
-        struct sr_bsdf bsdf = {.model = NULL};
-        struct sr_frame frame;
-        if (x.material) {
-            if (has_footprints) {
-                sr_path_footprint(start, &x, bounce == 0, is_scattered, spread, &width);
-                if (first && bounce == 0)
-                    first->point = x.point;
-            }
-            sr_material_shade(x.material, &x.point, sr_neg(ray.d), u_bsdf[3], sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu, w, &bsdf, &frame);
+        if (x.material && has_footprints) {
+            sr_path_footprint(start, &x, bounce == 0, is_scattered, spread, &width);
+            if (first && bounce == 0)
+                first->point = x.point;
         }
-        if (!bsdf.model) {
-            if (++passed > 1000)
+        struct sr_bsdf bsdf;
+        struct sr_frame frame;
+        if (!sr_shade(&x, ray.d, u_bsdf[3], sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu, w, &bsdf, &frame)) {
+            if (!sr_pass(&x, &ray, &passed))
                 return L;
-            ray = sr_leave(&x.point, ray.d);
             continue;
         }
         worker->vertices += 1;

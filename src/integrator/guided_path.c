@@ -16,6 +16,7 @@
  * path.c's without translucent bodies; a meter, which has no pilot, is read by plain paths. */
 #include "integrator/guide.h"
 #include "integrator/path.h"
+#include "integrator/shade.h"
 #include "integrator/vertices.h"
 
 #include <stdio.h>
@@ -202,24 +203,17 @@ static sr_spectrum walk(const struct guided *m, const struct sr_scene *scene, co
         }
         if (!is_hit || (x.material && bounce == m->path.max_depth))
             return L;
-        struct sr_bsdf bsdf = {.model = NULL};
-        struct sr_frame frame;
-        if (x.material) {
-            if (has_footprints) {
-                sr_path_footprint(start, &x, bounce == 0, is_scattered, spread, &width);
-                if (first && bounce == 0)
-                    first->point = x.point;
-            }
-            uint32_t seed = sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu; // random walks hash it
-            if (SR_LIKELY(x.is_plain))
-                sr_material_shade_plain(x.material, x.lambert, &x.point, sr_neg(ray.d), u_bsdf[3], seed, w, &bsdf, &frame);
-            else
-                sr_material_shade(x.material, &x.point, sr_neg(ray.d), u_bsdf[3], seed, w, &bsdf, &frame);
+        if (x.material && has_footprints) {
+            sr_path_footprint(start, &x, bounce == 0, is_scattered, spread, &width);
+            if (first && bounce == 0)
+                first->point = x.point;
         }
-        if (!bsdf.model) {
-            if (++passed > 1000)
+        struct sr_bsdf bsdf;
+        struct sr_frame frame;
+        uint32_t seed = sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu; // random walks hash it
+        if (!sr_shade_plain(&x, ray.d, u_bsdf[3], seed, w, &bsdf, &frame)) {
+            if (!sr_pass(&x, &ray, &passed))
                 return L;
-            ray = sr_leave(&x.point, ray.d);
             continue;
         }
         worker->vertices += 1;

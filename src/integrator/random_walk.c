@@ -4,7 +4,7 @@
  *     L(x, wo) = Le(x, wo) + 4 pi E[ f(wo, wi) |cos theta_i| L(x, wi) ]           [W m^-2 sr^-1 nm^-1]
  *
  * It cannot see through mirrors and glass, whose directions have no chance of being drawn. */
-#include "integrator/integrator.h"
+#include "integrator/shade.h"
 
 struct random_walk {
     int32_t max_depth; // most scatterings of a path
@@ -39,14 +39,11 @@ static sr_spectrum random_walk_L(const void *self, const struct sr_scene *scene,
         }
         uint32_t group = SR_USE_BOUNCE + 2 * (uint32_t)bounce;
         sr_u4 u = sr_sample4(sampler, group + 1);
-        struct sr_bsdf bsdf = {.model = NULL};
+        struct sr_bsdf bsdf;
         struct sr_frame frame;
-        if (x.material)
-            sr_material_shade(x.material, &x.point, sr_neg(ray.d), u[3], sr_hash_combine(sampler->key + sampler->sample, group), w, &bsdf, &frame);
-        if (!bsdf.model) {
-            if (++passed > 1000)
+        if (!sr_shade(&x, ray.d, u[3], sr_hash_combine(sampler->key + sampler->sample, group), w, &bsdf, &frame)) {
+            if (!sr_pass(&x, &ray, &passed))
                 return L;
-            ray = sr_leave(&x.point, ray.d);
             continue;
         }
         worker->vertices += 1;

@@ -4,7 +4,7 @@
  *     L(x, wo) = Le(x, wo) + integral f(wo, wi) L(x, wi) |cos theta_i| dwi        [W m^-2 sr^-1 nm^-1]
  *
  * Light arrives either by light sampling or by the surface's own directions, never by both, so each is counted once. */
-#include "integrator/integrator.h"
+#include "integrator/shade.h"
 
 struct simple_path {
     int32_t max_depth; // most scatterings of a path
@@ -54,14 +54,11 @@ static sr_spectrum simple_path_L(const void *self, const struct sr_scene *scene,
         }
         uint32_t group = SR_USE_BOUNCE + 2 * (uint32_t)bounce;
         sr_u4 u_light = sr_sample4(sampler, group), u_bsdf = sr_sample4(sampler, group + 1);
-        struct sr_bsdf bsdf = {.model = NULL};
+        struct sr_bsdf bsdf;
         struct sr_frame frame;
-        if (x.material)
-            sr_material_shade(x.material, &x.point, sr_neg(ray.d), u_bsdf[3], sr_hash_combine(sampler->key + sampler->sample, group), w, &bsdf, &frame);
-        if (!bsdf.model) {
-            if (++passed > 1000)
+        if (!sr_shade(&x, ray.d, u_bsdf[3], sr_hash_combine(sampler->key + sampler->sample, group), w, &bsdf, &frame)) {
+            if (!sr_pass(&x, &ray, &passed))
                 return L;
-            ray = sr_leave(&x.point, ray.d);
             continue;
         }
         worker->vertices += 1;
