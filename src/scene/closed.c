@@ -144,8 +144,11 @@ bool scene_may_have_slipped(const struct sr_scene *scene, const struct sr_ray *r
 
 sr_vec3 scene_beside(sr_vec3 d, int attempt)
 {
-    static const sr_vec3 ways[SLIP_ATTEMPTS] = {{0.62f, -0.81f, 0.37f}, {-0.93f, -0.29f, 0.71f}, {0.43f, 0.97f, -0.58f}, {-0.51f, 0.38f, -0.88f}};
-    static const float far[SLIP_ATTEMPTS] = {0x1p-20f, 0x1p-17f, 0x1p-14f, 0x1p-11f}; // [rad]; the last: beside a gap of 2^-12
+    static const sr_vec3 ways[SLIP_ATTEMPTS + SLIP_RING] = {{0.62f, -0.81f, 0.37f}, {-0.93f, -0.29f, 0.71f}, {0.43f, 0.97f, -0.58f},
+                                                            // a tetrahedron: whichever way it is seen, around d
+                                                            {0.58f, 0.58f, 0.58f}, {0.58f, -0.58f, -0.58f}, {-0.58f, 0.58f, -0.58f}, {-0.58f, -0.58f, 0.58f}};
+    static const float far[SLIP_ATTEMPTS] = {0x1p-20f, 0x1p-18f, 0x1p-16f}; // [rad]; 16 to 256 roundings
+    const float ring = 0x1p-11f;                                             // [rad]; beside a gap of 2^-12
     float size = sr_max(fabsf(d.x), sr_max(fabsf(d.y), fabsf(d.z)));
-    return sr_mad(d, far[attempt] * size, ways[attempt]);
+    return sr_mad(d, (attempt < SLIP_ATTEMPTS ? far[attempt] : ring) * size, ways[attempt]);
 }

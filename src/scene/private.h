@@ -46,7 +46,7 @@ struct instance {
 struct sr_transform instance_transform(const struct instance *instance, float time);
 
 /* A closed mesh in the world, or what is closed of an instance. */
-enum { CLOSED_MAX = 16, SLIP_ATTEMPTS = 4 };
+enum { CLOSED_MAX = 16, SLIP_ATTEMPTS = 3, SLIP_RING = 4 };
 struct closed {
     struct sr_box box;
     float volume;               // [m^3] of the box
@@ -104,7 +104,8 @@ void scene_find_media(struct sr_scene *scene); // once rays can be cast
 void scene_find_closed(struct sr_scene *scene); // once the instances are there
 /* Whether a ray that met nothing began within something closed, and not on the way out, and went on to its outside. */
 bool scene_may_have_slipped(const struct sr_scene *scene, const struct sr_ray *ray);
-/* The direction, a few roundings beside; attempt 0 … SLIP_ATTEMPTS - 1. */
+/* The direction, a few roundings beside, attempt 0 … SLIP_ATTEMPTS - 1; then 0.5 mrad beside on all sides, SLIP_RING of them, all of
+ * which must meet something before one is believed: else silhouettes would grow by as much. Only for rays without end. */
 sr_vec3 scene_beside(sr_vec3 d, int attempt);
 void scene_build_embree(struct sr_scene *scene, int threads);
 

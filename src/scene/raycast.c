@@ -39,11 +39,15 @@ static void to_world(struct sr_point *x, const struct sr_transform *t, int round
 /* What a ray that seems to have slipped out meets beside. */
 static bool cast_beside(const struct sr_scene *scene, const struct sr_ray *ray, struct RTCRayHit *rh)
 {
-    for (int i = 0; i < SLIP_ATTEMPTS && rh->hit.geomID == RTC_INVALID_GEOMETRY_ID; ++i) {
+    for (int i = 0; i < SLIP_ATTEMPTS + (isinf(ray->t_max) ? SLIP_RING : 0); ++i) {
         struct RTCIntersectContext context;
         rtcInitIntersectContext(&context);
         fill_ray(&rh->ray, ray->o, scene_beside(ray->d, i), ray->time, ray->t_max);
+        rh->hit.geomID = RTC_INVALID_GEOMETRY_ID;
         rtcIntersect1(scene->embree, &context, rh);
+        bool has_met = rh->hit.geomID != RTC_INVALID_GEOMETRY_ID;
+        if (has_met == (i < SLIP_ATTEMPTS))
+            return has_met;
     }
     return rh->hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
@@ -128,10 +132,12 @@ bool sr_is_free(const struct sr_scene *scene, const struct sr_ray *ray)
         return false;
     if (!scene->closed_count || !scene_may_have_slipped(scene, ray))
         return true;
-    bool free = true;
-    for (int i = 0; i < SLIP_ATTEMPTS && free; ++i)
-        free = is_free(scene, ray, scene_beside(ray->d, i));
-    return free;
+    for (int i = 0; i < SLIP_ATTEMPTS + (isinf(ray->t_max) ? SLIP_RING : 0); ++i) {
+        bool free = is_free(scene, ray, scene_beside(ray->d, i));
+        if (free == (i >= SLIP_ATTEMPTS))
+            return free;
+    }
+    return !isinf(ray->t_max);
 }
 
 bool sr_visible(const struct sr_scene *scene, const struct sr_point *x, const struct sr_light_sample *s)

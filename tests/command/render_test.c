@@ -47,6 +47,14 @@ TEST(render_is_quiet_when_asked)
     EXPECT_SAYS(run_expecting(0, "render " CORNELL TINY "-o c.exr")->err, "cd/m^2 ±");
 }
 
+TEST(render_tells_logs_how_far_it_is_when_asked)
+{
+    const struct said *s = run_expecting(0, "render " CORNELL TINY "-o c.exr --time 1.3s --progress 0.01s");
+    EXPECT_SAYS(s->err, " left, ");
+    EXPECT(!strchr(s->err, '\r'));
+    EXPECT(!strstr(run_expecting(0, "render " CORNELL TINY "-o c.exr --time 1.3s")->err, " left, "));
+}
+
 TEST(render_writes_the_same_bytes_again)
 {
     run_expecting(0, "render " CORNELL TINY "-o one.pfm -q --threads 1");

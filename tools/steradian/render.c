@@ -35,6 +35,8 @@ static const char help[] =
     "      --sample-range A-B  samples A <= i < B of each pixel's 0 to spp, into a part: -o FILE.srp; 'steradian merge'\n"
     "                         makes the picture of all parts (an image beside it shows this part alone)\n"
     "      --part K/N         the same, with the K-th (1 to N) of N even ranges: for job arrays\n"
+    "      --progress T       a line of progress every T (10s, 1min), for logs; without it a terminal shows a bar, and\n"
+    "                         nothing else shows anything\n"
     "      --write-partial S  write the output every S seconds while rendering\n"
     "      --checkpoint FILE  keep the render in this file while it goes on (default: the first output's name with .srk)\n"
     "      --checkpoint-interval T  so often: 60s (default), 5min, 1h; the file goes when the picture has been written\n"
@@ -190,7 +192,7 @@ static int render_scene(const struct render_arguments *a, const struct sr_import
     bool wants_exr = false;
     for (int i = 0; i < render_output_count(a); ++i)
         wants_exr |= a->has_range || sr_path_has_ending(render_output_name(a, scene, i), ".exr");
-    struct rendering r = {.arguments = a, .scene = scene, .on_terminal = !a->quiet && isatty(STDERR_FILENO)};
+    struct rendering r = {.arguments = a, .scene = scene, .on_terminal = !a->quiet && !(a->progress_s > 0) && isatty(STDERR_FILENO)};
     struct sr_render_job job = make_job(a, scene, a->aov && wants_exr, &r);
     r.job = &job;
     r.about = picture_about(arena, &job, scene->hash, scene->units);

@@ -40,6 +40,7 @@ enum {
     OPT_PART,
     OPT_CHECKPOINT,
     OPT_CHECKPOINT_INTERVAL,
+    OPT_PROGRESS,
     OPT_NO_CHECKPOINT,
     OPT_RESUME,
 };
@@ -64,6 +65,7 @@ static const struct option long_options[] = {
     {"write-partial", required_argument, NULL, OPT_PARTIAL},
     {"checkpoint", required_argument, NULL, OPT_CHECKPOINT},
     {"checkpoint-interval", required_argument, NULL, OPT_CHECKPOINT_INTERVAL},
+    {"progress", required_argument, NULL, OPT_PROGRESS},
     {"no-checkpoint", no_argument, NULL, OPT_NO_CHECKPOINT},
     {"resume", no_argument, NULL, OPT_RESUME},
     {"tile", required_argument, NULL, OPT_TILE},
@@ -168,6 +170,8 @@ static bool take_numbers(struct render_arguments *a, int option, const char *nam
         return command_parse_time(c, name, text, &a->adaptive.time_s);
     case OPT_CHECKPOINT_INTERVAL:
         return command_parse_time(c, name, text, &a->checkpoint_s);
+    case OPT_PROGRESS:
+        return command_parse_time(c, name, text, &a->progress_s);
     case OPT_UNITS:
         return command_parse_units(c, text, &a->import.units);
     case OPT_EXPOSURE:

@@ -24,6 +24,7 @@ struct render_arguments {
     uint64_t part[2];              // instead, number K of N even ranges; N = 0: not asked for
     const char *checkpoint; // NULL: beside the first output
     double checkpoint_s;    // between checkpoints
+    double progress_s;      // between lines; 0: a bar, where there is a terminal
     bool no_checkpoint, resume;
     double meters[RENDER_MAX_METERS][6]; // [m] point, [1] normal
     int meter_count;
@@ -37,8 +38,8 @@ struct rendering {
     const char *about;     // of picture_about
     struct sr_render_range range; // of a part
     const struct sr_render_keep *keep; // NULL: none
-    double last_partial_s; // [s]
-    bool on_terminal;
+    double last_partial_s, last_progress_s; // [s]
+    bool on_terminal;  // a bar is drawn there
 };
 
 /* Set by a program whose processes render together; all zero: this one renders alone. */

@@ -157,24 +157,29 @@ static const char *duration(double s, char text[32])
     return text;
 }
 
-static void print_progress(const struct sr_render_progress *p)
+/* A bar that grows in place, or a line of a log. */
+static void print_progress(const struct sr_render_progress *p, bool in_place)
 {
     enum { CELLS = 24 };
-    char bar[CELLS + 1], elapsed[32], left[32];
-    for (int i = 0; i < CELLS; ++i)
+    char bar[CELLS + 3] = "", elapsed[32], left[32];
+    for (int i = 0; in_place && i < CELLS; ++i)
         bar[i] = i < p->share * CELLS ? '#' : '.';
-    bar[CELLS] = 0;
-    fprintf(stderr, "\r%5.1f %% %s  %s, %s left, %.2f M rays/s\033[K", 100 * p->share, bar,
-            duration(p->elapsed_s, elapsed), duration(p->left_s, left),
-            p->elapsed_s > 0 ? 1e-6 * (double)p->rays / p->elapsed_s : 0);
+    if (in_place)
+        memcpy(bar + CELLS, "  ", sizeof "  ");
+    fprintf(stderr, "%s%5.1f %% %s%s, %s left, %.2f M rays/s%s", in_place ? "\r" : "", 100 * p->share, bar, duration(p->elapsed_s, elapsed),
+            duration(p->left_s, left), p->elapsed_s > 0 ? 1e-6 * (double)p->rays / p->elapsed_s : 0, in_place ? "\033[K" : "\n");
 }
 
 void render_on_progress(void *user, const struct sr_render_progress *p)
 {
     struct rendering *r = user;
     const struct render_arguments *a = r->arguments;
-    if (r->on_terminal)
-        print_progress(p);
+    if (r->on_terminal) {
+        print_progress(p, true);
+    } else if (a->progress_s > 0 && !a->quiet && p->elapsed_s - r->last_progress_s >= a->progress_s) {
+        print_progress(p, false);
+        r->last_progress_s = p->elapsed_s;
+    }
     bool is_asked = atomic_exchange(&is_partial_wanted, false);
     if (a->has_range)
         return; // a part is written when it is whole
