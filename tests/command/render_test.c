@@ -50,7 +50,7 @@ TEST(render_is_quiet_when_asked)
 TEST(render_tells_logs_how_far_it_is_when_asked)
 {
 #define FOR_SECONDS "render " CORNELL " --resolution 96,96 --threads 1 -o c.exr --spp "
-    const char *const spp = is_slow_build() ? "10" : "150";
+    const char *const spp = is_slow_build() ? "60" : "150";
     char command[256];
     snprintf(command, sizeof command, FOR_SECONDS "%s --progress 0.01s", spp);
     const struct said *s = run_expecting(0, command);
