@@ -20,7 +20,7 @@ static inline bool sr_shade(struct sr_hit *x, sr_vec3 d, float u, uint32_t seed,
 /* The same in less time where the material is plain; the frame may be turned about its normal. */
 static inline bool sr_shade_plain(struct sr_hit *x, sr_vec3 d, float u, uint32_t seed, struct sr_wavelengths *w, struct sr_bsdf *bsdf, struct sr_frame *frame)
 {
-    if (!SR_LIKELY(x->is_plain))
+    if (!SR_LIKELY(x->material && x->is_plain)) // no material looks at nothing, and is plain
         return sr_shade(x, d, u, seed, w, bsdf, frame);
     sr_material_shade_plain(x->material, x->lambert, &x->point, sr_neg(d), u, seed, w, bsdf, frame);
     return bsdf->model != NULL;
