@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* How long f, pdf and sample of each model take, in ns of one processor: one line of JSON a model.
  *
- * Directions are drawn before: wo of the upper hemisphere in proportion to the cosine, wi as the sampler draws it and, every
- * second one, in proportion to the cosine. Parameters are the table's defaults, with slopes of at least 0.3, so that
- * models which can be mirrors are not. Medians of several runs of the processor's time; a value is for all wavelengths. */
+ * Directions are drawn before: wo of the upper hemisphere in proportion to the cosine, wi as the sampler draws it and,
+ * every second one, in proportion to the cosine. Parameters are the table's defaults, with slopes of at least 0.3, so
+ * that models which can be mirrors are not. Medians of several runs of the processor's time; a value is for all
+ * wavelengths. */
 #include "bsdf_bench.h"
 
 #include "bsdf/bsdf.h"

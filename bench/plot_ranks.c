@@ -41,7 +41,12 @@ int main(int argc, char **argv)
         *path++ = 0;
         bool is_points = argv[i][0] == '+';
         colour += !is_points || !colour;
-        curves[count] = (struct sr_plot_curve){.label = argv[i] + is_points, .x = cores[count], .y = efficiency[count], .colour = colour, .has_points = is_points, .has_no_line = is_points,
+        curves[count] = (struct sr_plot_curve){.label = argv[i] + is_points,
+                                               .x = cores[count],
+                                               .y = efficiency[count],
+                                               .colour = colour,
+                                               .has_points = is_points,
+                                               .has_no_line = is_points,
                                                .count = read_table(path, cores[count], efficiency[count])};
         if (!curves[count].count) {
             fprintf(stderr, "plot-ranks: %s: no rows of a table are in it\n", path);
@@ -52,9 +57,19 @@ int main(int argc, char **argv)
         fputs(help, stderr);
         return SR_ERROR_USAGE;
     }
-    struct sr_plot_panel panel = {.kind = SR_PLOT_LINES, .x = {.label = "cores", .is_log = true, .from = 1, .to = 1e5},
-                                  .y = {.label = "efficiency", .unit = "%", .from = 0, .to = 100}, .curves = curves, .curve_count = count, .has_no_legend = true};
-    struct sr_plot_figure figure = {.panels = &panel, .panel_count = 1, .width = 640, .height = 440, .legend = curves, .legend_count = count, .scale = 2};
+    struct sr_plot_panel panel = {.kind = SR_PLOT_LINES,
+                                  .x = {.label = "cores", .is_log = true, .from = 1, .to = 1e5},
+                                  .y = {.label = "efficiency", .unit = "%", .from = 0, .to = 100},
+                                  .curves = curves,
+                                  .curve_count = count,
+                                  .has_no_legend = true};
+    struct sr_plot_figure figure = {.panels = &panel,
+                                    .panel_count = 1,
+                                    .width = 640,
+                                    .height = 440,
+                                    .legend = curves,
+                                    .legend_count = count,
+                                    .scale = 2};
     struct sr_error error = {0};
     if (sr_plot_write(&figure, argv[1], &error) != SR_OK)
         fprintf(stderr, "plot-ranks: error: %s\n", error.text);

@@ -25,9 +25,11 @@ bool recorded_read(const char *path, struct recorded *r)
     while (file && fgets(line, sizeof line, file)) {
         double messages;
         uint32_t rank;
-        if (line[0] == '#' && sscanf(line, "# renderers %*d threads %*u messages %lf bytes %lf take_s %lf", &messages, &bytes, &take_s) == 3)
+        if (line[0] == '#' && sscanf(line, "# renderers %*d threads %*u messages %lf bytes %lf take_s %lf", &messages,
+                                     &bytes, &take_s) == 3)
             continue;
-        if (sscanf(line, "%u\t%u\t%u\t%u\t%u\t%u\t%u\t%lf", &u.tile, &u.block, &u.place.x, &u.place.y, &u.place.width, &u.place.height, &rank, &u.cost_s) != 8)
+        if (sscanf(line, "%u\t%u\t%u\t%u\t%u\t%u\t%u\t%lf", &u.tile, &u.block, &u.place.x, &u.place.y, &u.place.width,
+                   &u.place.height, &rank, &u.cost_s) != 8)
             continue;
         if (units == room) {
             uint64_t more = 2 * room + 1024;
@@ -55,7 +57,9 @@ bool recorded_read(const char *path, struct recorded *r)
     }
     sr_free(all);
     // nothing was sent: what a batch holds of a unit, with all channels (src/render/crew.c)
-    r->unit_B = sent > 0 ? bytes / sent : UNIT_HEADER_B + (double)r->width * r->height / (r->tiles ? r->tiles : 1) * sizeof(struct sr_film_block);
+    r->unit_B = sent > 0 ? bytes / sent
+                         : UNIT_HEADER_B +
+                               (double)r->width * r->height / (r->tiles ? r->tiles : 1) * sizeof(struct sr_film_block);
     r->take_s = bytes > 0 ? take_s / bytes : 5e-10;
     return units > 0;
 }

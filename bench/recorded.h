@@ -13,8 +13,8 @@ struct recorded {
     uint32_t tiles, blocks, width, height;
     double *cost_s; // [tile * blocks + block], of one thread
     struct recorded_tile *of_tile;
-    double unit_B;  // that a helper's unit takes on its way
-    double take_s;  // that rank 0 needs for a byte of it
+    double unit_B; // that a helper's unit takes on its way
+    double take_s; // that rank 0 needs for a byte of it
 };
 
 /* false: no such file, or no units are in it. */

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* steradian-mpi whose units are slept instead of rendered: deals, messages, batches and the film are the real ones, and only what a
- * unit costs comes from a log. So any number of ranks can be timed by the clock on a machine that has fewer processors, and
- * compared with bench/simulate-ranks.
+/* steradian-mpi whose units are slept instead of rendered: deals, messages, batches and the film are the real ones, and
+ * only what a unit costs comes from a log. So any number of ranks can be timed by the clock on a machine that has fewer
+ * processors, and compared with bench/simulate-ranks.
  *
  *     efficiency = sum of what the units cost / (threads of all ranks * time of the pass)
  *
- * A sleep ends late by a while; so much less is slept in the thread's next one. Limits: the film holds sums of colour and what is seen
- * first, no splats and no spectra; ranks are on one machine, so that messages go through its memory. */
+ * A sleep ends late by a while; so much less is slept in the thread's next one. Limits: the film holds sums of colour
+ * and what is seen first, no splats and no spectra; ranks are on one machine, so that messages go through its memory.
+ */
 #define _POSIX_C_SOURCE 200809L
 #include "recorded.h"
 
@@ -33,7 +34,9 @@ static const char help[] =
 /* What steradian-mpi has of the command `render`. */
 struct render_crew render_crew;
 atomic_bool render_interrupted;
-void hush_end(void) {}
+void hush_end(void)
+{
+}
 
 struct rehearsal {
     struct crew *crew;
@@ -62,7 +65,8 @@ static void work(void *context, int thread)
     const struct recorded *log = &r->log;
     uint32_t most = 0;
     for (uint32_t i = 0; i < log->tiles; ++i)
-        most = log->of_tile[i].width * log->of_tile[i].height > most ? log->of_tile[i].width * log->of_tile[i].height : most;
+        most = log->of_tile[i].width * log->of_tile[i].height > most ? log->of_tile[i].width * log->of_tile[i].height
+                                                                     : most;
     struct sr_film_block *blocks = sr_alloc(most * sizeof *blocks);
     double late_s = 0;
     uint64_t unit;
@@ -72,7 +76,12 @@ static void work(void *context, int thread)
         uint32_t tiles = log->tiles * r->pixels, tile = (uint32_t)(unit % tiles), block = (uint32_t)(unit / tiles);
         const struct recorded_tile *t = &log->of_tile[tile / r->pixels];
         uint32_t y0 = t->y + tile % r->pixels * log->height, count = t->width * t->height;
-        struct sr_crew_unit u = {.tile = tile, .block = block, .x0 = t->x, .y0 = y0, .x1 = t->x + t->width, .y1 = y0 + t->height,
+        struct sr_crew_unit u = {.tile = tile,
+                                 .block = block,
+                                 .x0 = t->x,
+                                 .y0 = y0,
+                                 .x1 = t->x + t->width,
+                                 .y1 = y0 + t->height,
                                  .cost_s = log->cost_s[(size_t)(tile / r->pixels) * log->blocks + block] * r->samples};
         struct sr_film *splats;
         struct sr_crew_batch *batch = r->batches ? sr_crew_enter(r->batches, &splats) : NULL;
@@ -112,10 +121,21 @@ static sr_status rehearse(struct rehearsal *r, struct sr_error *error)
     struct crew *c = r->crew;
     const struct sr_render_crew *hooks = &c->hooks;
     int32_t width = (int32_t)r->log.width, height = (int32_t)(r->log.height * r->pixels);
-    struct sr_render_job job = {.film = {.width = width, .height = height, .x1 = width, .y1 = height, .iso = 100, .exposure_time = 1, .max_component = INFINITY},
-                                .with_aov = true, .crew = hooks};
-    struct sr_crew_pass pass = {.tiles = r->log.tiles * r->pixels, .blocks = r->log.blocks, .threads = c->place.all[c->place.rank].threads, .run = r,
-                                .take = take, .tick = tick};
+    struct sr_render_job job = {.film = {.width = width,
+                                         .height = height,
+                                         .x1 = width,
+                                         .y1 = height,
+                                         .iso = 100,
+                                         .exposure_time = 1,
+                                         .max_component = INFINITY},
+                                .with_aov = true,
+                                .crew = hooks};
+    struct sr_crew_pass pass = {.tiles = r->log.tiles * r->pixels,
+                                .blocks = r->log.blocks,
+                                .threads = c->place.all[c->place.rank].threads,
+                                .run = r,
+                                .take = take,
+                                .tick = tick};
     pthread_rwlock_init(&r->film_lock, NULL);
     r->tile_blocks = sr_alloc(pass.tiles * sizeof *r->tile_blocks);
     if (!r->tile_blocks)
@@ -178,7 +198,8 @@ int main(int argc, char **argv)
             fputs(help, stderr);
     } else {
         crew_begin(&crew);
-        render_crew = (struct render_crew){.hooks = &crew.hooks, .identity = "a rehearsal\n", .threads = threads, .processes = crew.place.renderers};
+        render_crew = (struct render_crew){
+            .hooks = &crew.hooks, .identity = "a rehearsal\n", .threads = threads, .processes = crew.place.renderers};
         pthread_t thread;
         if (!unit_log_open(&crew, unit_log) || pthread_create(&thread, NULL, rehearse_in_thread, &r) != 0)
             MPI_Abort(MPI_COMM_WORLD, SR_ERROR_RESOURCE);
@@ -187,8 +208,9 @@ int main(int argc, char **argv)
         unit_log_close(&crew);
         double cost_s = recorded_total_s(&r.log) * r.samples * r.pixels;
         if (is_owner && !code)
-            printf("%d\t%u\t%.4f\t%.4f\t%llu\t%llu\t%.5f\n", crew.place.renderers, crew.pool.threads, crew.passes_s, cost_s / (crew.pool.threads * crew.passes_s),
-                   (unsigned long long)crew.messages, (unsigned long long)crew.message_B, crew.took_s / crew.passes_s);
+            printf("%d\t%u\t%.4f\t%.4f\t%llu\t%llu\t%.5f\n", crew.place.renderers, crew.pool.threads, crew.passes_s,
+                   cost_s / (crew.pool.threads * crew.passes_s), (unsigned long long)crew.messages,
+                   (unsigned long long)crew.message_B, crew.took_s / crew.passes_s);
     }
     fflush(NULL);
     MPI_Finalize();

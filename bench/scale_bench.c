@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* How time and memory grow with triangles, lights, depth, pixels, wavelengths and threads: one line of JSON for each point; a
- * figure and a table of such lines, which may come from builds for 4, 8 and 16 wavelengths (bench/scale).
+/* How time and memory grow with triangles, lights, depth, pixels, wavelengths and threads: one line of JSON for each
+ * point; a figure and a table of such lines, which may come from builds for 4, 8 and 16 wavelengths (bench/scale).
  *
  * Each point runs in a process of its own, which makes its scene, reads it, renders it and tells through a pipe. */
 #include "scale_bench.h"
@@ -33,8 +33,9 @@ struct point {
 
 /* ---- scenes ---- */
 
-static const char head[] = "LookAt %s\nCamera \"perspective\" \"float fov\" 40\nSampler \"zsobol\"\nIntegrator \"path\" \"integer maxdepth\" 8\nWorldBegin\n"
-                           "Material \"diffuse\" \"rgb reflectance\" [0.6 0.55 0.5]\n";
+static const char head[] =
+    "LookAt %s\nCamera \"perspective\" \"float fov\" 40\nSampler \"zsobol\"\nIntegrator \"path\" \"integer maxdepth\" 8\nWorldBegin\n"
+    "Material \"diffuse\" \"rgb reflectance\" [0.6 0.55 0.5]\n";
 
 static FILE *begin(const char *folder, const char *name, const char *look, char *path, size_t size)
 {
@@ -54,15 +55,21 @@ static bool triangles(const char *folder, uint64_t n, char *path, size_t size)
     FILE *mesh = fopen(ply, "wb");
     if (!f || !mesh)
         return false;
-    fputs("LightSource \"infinite\" \"rgb L\" [0.4 0.45 0.5]\nShape \"plymesh\" \"string filename\" \"scale.ply\"\n"
-          "AreaLightSource \"diffuse\" \"rgb L\" [12 11 10]\n"
-          "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-2 -2 4  -2 -1 4  -1 -1 4  -1 -2 4]\n", f);
+    fputs(
+        "LightSource \"infinite\" \"rgb L\" [0.4 0.45 0.5]\nShape \"plymesh\" \"string filename\" \"scale.ply\"\n"
+        "AreaLightSource \"diffuse\" \"rgb L\" [12 11 10]\n"
+        "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-2 -2 4  -2 -1 4  -1 -1 4  -1 -2 4]\n",
+        f);
     int32_t side = (int32_t)lrint(sqrt((double)n / 2)), corners = side + 1;
-    fprintf(mesh, "ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n"
-                  "element face %d\nproperty list uchar int vertex_indices\nend_header\n", corners * corners, 2 * side * side);
+    fprintf(
+        mesh,
+        "ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face %d\nproperty list uchar int vertex_indices\nend_header\n",
+        corners * corners, 2 * side * side);
     for (int32_t j = 0; j < corners; ++j)
         for (int32_t i = 0; i < corners; ++i) {
-            float x = 2 * (float)i / (float)side - 1, y = 2 * (float)j / (float)side - 1, p[3] = {x, y, 0.1f * sinf(17 * x) * cosf(13 * y) + 0.02f * sinf(91 * x + 57 * y)};
+            float x = 2 * (float)i / (float)side - 1, y = 2 * (float)j / (float)side - 1,
+                  p[3] = {x, y, 0.1f * sinf(17 * x) * cosf(13 * y) + 0.02f * sinf(91 * x + 57 * y)};
             fwrite(p, sizeof p, 1, mesh);
         }
     for (int32_t j = 0; j < side; ++j)
@@ -79,9 +86,11 @@ static bool triangles(const char *folder, uint64_t n, char *path, size_t size)
 
 static void room(FILE *f)
 {
-    fputs("Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3  4 5 6 4 6 7  8 9 10 8 10 11  12 13 14 12 14 15  16 17 18 16 18 19]\n"
-          "  \"point3 P\" [-1 0 -1  -1 0 1  1 0 1  1 0 -1   -1 2 -1  1 2 -1  1 2 1  -1 2 1   -1 0 1  -1 2 1  1 2 1  1 0 1\n"
-          "                -1 0 -1  -1 2 -1  -1 2 1  -1 0 1   1 0 -1  1 0 1  1 2 1  1 2 -1]\n", f);
+    fputs(
+        "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3  4 5 6 4 6 7  8 9 10 8 10 11  12 13 14 12 14 15  16 17 18 16 18 19]\n"
+        "  \"point3 P\" [-1 0 -1  -1 0 1  1 0 1  1 0 -1   -1 2 -1  1 2 -1  1 2 1  -1 2 1   -1 0 1  -1 2 1  1 2 1  1 0 1\n"
+        "                -1 0 -1  -1 2 -1  -1 2 1  -1 0 1   1 0 -1  1 0 1  1 2 1  1 2 -1]\n",
+        f);
 }
 
 /* Small glowing triangles all over a room, of the same power together whatever their number. */
@@ -102,7 +111,8 @@ static bool lights(const char *folder, uint64_t n, char *path, size_t size)
         for (int k = 0; k < 3; ++k)
             p[k] = 1.8f * ((float)(sr_hash_combine(key, (uint32_t)k) >> 8) * 0x1p-24f - 0.5f);
         for (int k = 0; k < 3; ++k)
-            fprintf(f, "%g %g %g\n", (double)(p[0] + (k == 1 ? side : 0)), (double)(p[1] + 1 + (k == 2 ? side : 0)), (double)(p[2] + (k ? 0 : side)));
+            fprintf(f, "%g %g %g\n", (double)(p[0] + (k == 1 ? side : 0)), (double)(p[1] + 1 + (k == 2 ? side : 0)),
+                    (double)(p[2] + (k ? 0 : side)));
     }
     fputs("]\n", f);
     bool is_good = !ferror(f);
@@ -131,7 +141,8 @@ static double processor_s(void)
 {
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);
-    return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) + 1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+    return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+           1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
 
 static int measure(const struct series *s, uint64_t n, const char *folder, int runs, struct point *p)
@@ -145,7 +156,8 @@ static int measure(const struct series *s, uint64_t n, const char *folder, int r
     uint32_t side = is_pixels ? (uint32_t)lrint(sqrt((double)n)) : 128;
     if (strcmp(s->name, "depth") == 0)
         snprintf(estimator, sizeof estimator, "path,maxdepth=%llu", (unsigned long long)n);
-    struct sr_import_options options = {.spp = is_pixels ? 4 : 16, .width = side, .height = side, .integrator = estimator};
+    struct sr_import_options options = {
+        .spp = is_pixels ? 4 : 16, .width = side, .height = side, .integrator = estimator};
     struct sr_error error = {0};
     struct sr_log log = {0};
     struct sr_import_result scene;
@@ -154,9 +166,18 @@ static int measure(const struct series *s, uint64_t n, const char *folder, int r
         return 1;
     }
     struct sr_render_job job = {
-        .scene = scene.scene, .sensor = scene.sensor, .filter = scene.filter, .integrator = scene.integrator, .film = scene.film,
-        .sampler = scene.sampler, .seed = 1, .spp = scene.spp, .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
-        .jitter_pixel = true, .jitter_lambda = true, .threads = is_threads ? (int)n : 1,
+        .scene = scene.scene,
+        .sensor = scene.sensor,
+        .filter = scene.filter,
+        .integrator = scene.integrator,
+        .film = scene.film,
+        .sampler = scene.sampler,
+        .seed = 1,
+        .spp = scene.spp,
+        .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
+        .jitter_pixel = true,
+        .jitter_lambda = true,
+        .threads = is_threads ? (int)n : 1,
     };
     double best = INFINITY; // the least of several runs: what others do on the machine only adds
     for (int i = 0; i < runs; ++i) {
@@ -168,7 +189,8 @@ static int measure(const struct series *s, uint64_t n, const char *folder, int r
             return 1;
         }
         for (int c = 0; c < 3; ++c)
-            p->variance += pow(sr_film_relative_error(film, (const double[3]){c == 0, c == 1, c == 2}), 2) * scene.spp / (3 * runs);
+            p->variance += pow(sr_film_relative_error(film, (const double[3]){c == 0, c == 1, c == 2}), 2) * scene.spp /
+                           (3 * runs);
         sr_film_destroy(film);
         // of one thread the processor's time, which others on the machine do not add to
         best = fmin(best, (is_threads ? report.render_s : processor_s() - start_s) / (double)report.paths);
@@ -219,20 +241,24 @@ int bench_scale(const char *only, const char *folder, int runs)
                 is_good = false;
                 continue;
             }
-            printf("{\"scale\": \"%s\", \"n\": %llu, \"wavelengths\": %d, \"path_ns\": %.0f, \"paths_per_s\": %.0f, \"rays_per_path\": %.3f, \"variance\": %.4g, "
-                   "\"read_s\": %.4f, \"build_s\": %.4f, \"peak_memory_B\": %.0f}\n",
-                   s->name, (unsigned long long)s->at[k], SR_LAMBDA_COUNT, p.path_ns, p.paths_per_s, p.rays_per_path, p.variance, p.read_s, p.build_s, p.memory_B);
+            printf(
+                "{\"scale\": \"%s\", \"n\": %llu, \"wavelengths\": %d, \"path_ns\": %.0f, \"paths_per_s\": %.0f, \"rays_per_path\": %.3f, \"variance\": %.4g, "
+                "\"read_s\": %.4f, \"build_s\": %.4f, \"peak_memory_B\": %.0f}\n",
+                s->name, (unsigned long long)s->at[k], SR_LAMBDA_COUNT, p.path_ns, p.paths_per_s, p.rays_per_path,
+                p.variance, p.read_s, p.build_s, p.memory_B);
         }
     }
     if (!is_known)
-        fprintf(stderr, "sr_bench: --scale=%s: expected triangles, lights, depth, pixels, wavelengths or threads\n", only);
+        fprintf(stderr, "sr_bench: --scale=%s: expected triangles, lights, depth, pixels, wavelengths or threads\n",
+                only);
     return !is_known ? 2 : !is_good;
 }
 
 /* ---- figure and table ---- */
 
 struct results {
-    double x[MAX_POINTS], path_us[MAX_POINTS], memory_MB[MAX_POINTS], load_s[MAX_POINTS], paths_per_s[MAX_POINTS], rays[MAX_POINTS], work_us[MAX_POINTS];
+    double x[MAX_POINTS], path_us[MAX_POINTS], memory_MB[MAX_POINTS], load_s[MAX_POINTS], paths_per_s[MAX_POINTS],
+        rays[MAX_POINTS], work_us[MAX_POINTS];
     uint32_t count;
 };
 
@@ -280,7 +306,8 @@ static sr_status draw(const struct results results[SERIES], const char *path, st
         } shown[] = {
             {r->path_us, "time of a path", "µs", !is_threads},
             {r->paths_per_s, "paths a second", "s^{-1}", is_threads},
-            {r->memory_MB, "peak memory", "MB", is_triangles || strcmp(name, "lights") == 0 || strcmp(name, "pixels") == 0},
+            {r->memory_MB, "peak memory", "MB",
+             is_triangles || strcmp(name, "lights") == 0 || strcmp(name, "pixels") == 0},
             {r->load_s, "read and built", "s", is_triangles},
             {r->work_us, "time x variance of a path", "µs", strcmp(name, "wavelengths") == 0},
         };
@@ -291,15 +318,27 @@ static sr_status draw(const struct results results[SERIES], const char *path, st
             for (uint32_t j = 0; j < r->count; ++j)
                 most = fmax(most, shown[k].values[j]);
             bool is_linear = is_threads || strcmp(name, "wavelengths") == 0;
-            c[n] = (struct sr_plot_curve){.x = r->x, .y = shown[k].values, .count = r->count, .colour = 1 + (int)k % 4, .has_points = true};
-            panels[n] = (struct sr_plot_panel){.x = {.label = all_series[i].axis, .is_log = !is_linear, .step = is_threads ? 1 : is_linear ? 4 : 0},
-                                               .y = {.label = shown[k].label, .unit = shown[k].unit, .is_log = !is_linear, .to = is_linear ? 1.1 * most : 0},
-                                               .curves = &c[n], .curve_count = 1, .has_no_legend = true};
+            c[n] = (struct sr_plot_curve){
+                .x = r->x, .y = shown[k].values, .count = r->count, .colour = 1 + (int)k % 4, .has_points = true};
+            panels[n] = (struct sr_plot_panel){.x = {.label = all_series[i].axis,
+                                                     .is_log = !is_linear,
+                                                     .step = is_threads  ? 1
+                                                             : is_linear ? 4
+                                                                         : 0},
+                                               .y = {.label = shown[k].label,
+                                                     .unit = shown[k].unit,
+                                                     .is_log = !is_linear,
+                                                     .to = is_linear ? 1.1 * most : 0},
+                                               .curves = &c[n],
+                                               .curve_count = 1,
+                                               .has_no_legend = true};
             ++n;
         }
     }
-    struct sr_plot_figure figure = {.title = "How time and memory grow", .panels = panels, .panel_count = n, .columns = 4};
-    return n ? sr_plot_write(&figure, path, error) : sr_fail(error, SR_ERROR_INPUT, "there are no lines of sr_bench --scale");
+    struct sr_plot_figure figure = {
+        .title = "How time and memory grow", .panels = panels, .panel_count = n, .columns = 4};
+    return n ? sr_plot_write(&figure, path, error)
+             : sr_fail(error, SR_ERROR_INPUT, "there are no lines of sr_bench --scale");
 }
 
 int bench_scale_draw(const char *lines, const char *figure)
@@ -317,12 +356,13 @@ int bench_scale_draw(const char *lines, const char *figure)
         fprintf(stderr, "sr_bench: %s\n", error.text);
         return 1;
     }
-    printf("| varied | | time of a path [µs] | paths/s [k] | rays a path | time x variance of a path [µs] | read and built [s] | peak memory [MB] |\n|---|---|---|---|---|---|---|---|\n");
+    printf(
+        "| varied | | time of a path [µs] | paths/s [k] | rays a path | time x variance of a path [µs] | read and built [s] | peak memory [MB] |\n|---|---|---|---|---|---|---|---|\n");
     for (int i = 0; i < SERIES; ++i)
         for (uint32_t k = 0; k < results[i].count; ++k) {
             const struct results *r = &results[i];
-            printf("| %s | %.0f | %.3g | %.0f | %.2f | %.3g | %.3g | %.1f |\n", all_series[i].axis, r->x[k], r->path_us[k], 1e-3 * r->paths_per_s[k], r->rays[k], r->work_us[k],
-                   r->load_s[k], r->memory_MB[k]);
+            printf("| %s | %.0f | %.3g | %.0f | %.2f | %.3g | %.3g | %.1f |\n", all_series[i].axis, r->x[k],
+                   r->path_us[k], 1e-3 * r->paths_per_s[k], r->rays[k], r->work_us[k], r->load_s[k], r->memory_MB[k]);
         }
     return 0;
 }

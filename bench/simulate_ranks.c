@@ -1,14 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-/* What a picture would take on more processors than there are: recorded costs of its units, dealt as steradian-mpi deals them.
+/* What a picture would take on more processors than there are: recorded costs of its units, dealt as steradian-mpi
+ * deals them.
  *
- * Events: a thread ends a unit; a wish, a deal, a batch of finished units, a helper's farewell arrives. Rank 0 serves what arrives one by one:
+ * Events: a thread ends a unit; a wish, a deal, a batch of finished units, a helper's farewell arrives. Rank 0 serves
+ * what arrives one by one:
  *
- *     start = arrival + nap / 2 where it was idle, else when it is free;    busy for  serve + bytes * (take + 1 / bandwidth)
+ *     start = arrival + nap / 2 where it was idle, else when it is free;    busy for  serve + bytes * (take + 1 /
+ * bandwidth)
  *
- * A message of B bytes is under way for  latency + B / bandwidth.  Deals come from the very code of steradian-mpi (pool.c).
- * Limits: threads of a rank do not slow each other down, rank 0's messages take no processor from its threads, the network has no
- * neighbours; the wait of a tile's blocks for each other is left out, and splats, whose batches are fewer and larger. What it
- * foretells is compared with real deals and messages by bench/rehearse-ranks. docs/guide/many-machines.md */
+ * A message of B bytes is under way for  latency + B / bandwidth.  Deals come from the very code of steradian-mpi
+ * (pool.c). Limits: threads of a rank do not slow each other down, rank 0's messages take no processor from its
+ * threads, the network has no neighbours; the wait of a tile's blocks for each other is left out, and splats, whose
+ * batches are fewer and larger. What it foretells is compared with real deals and messages by bench/rehearse-ranks.
+ * docs/guide/many-machines.md */
 #include "recorded.h"
 #include "../tools/steradian-mpi/pool.h"
 
@@ -47,9 +51,9 @@ struct event {
     double at_s;
     enum kind kind;
     uint32_t rank;
-    struct deal deal;            // of a unit: its tile and block
-    uint32_t units, tiles;       // of a batch: how many are done with it
-    double cost_s;               // of these units
+    struct deal deal;      // of a unit: its tile and block
+    uint32_t units, tiles; // of a batch: how many are done with it
+    double cost_s;         // of these units
 };
 
 struct rank {
@@ -57,7 +61,7 @@ struct rank {
     uint32_t deal_count, idle;
     uint64_t position, waiting; // waiting: dealt and not begun
     bool is_asked, is_exhausted, has_share, has_passed;
-    struct event batch;         // what has not been sent
+    struct event batch; // what has not been sent
     double batch_since_s;
 };
 
@@ -152,7 +156,8 @@ static void send_batch(struct simulation *s, struct rank *rank, uint32_t r, doub
     rank->batch_since_s = now_s;
 }
 
-/* Idle threads begin what there is; whoever runs short asks for more; a helper without work sends what it has and says that it is through. */
+/* Idle threads begin what there is; whoever runs short asks for more; a helper without work sends what it has and says
+ * that it is through. */
 static void go_on(struct simulation *s, uint32_t r, double now_s)
 {
     struct rank *rank = &s->ranks[r];
@@ -163,7 +168,8 @@ static void go_on(struct simulation *s, uint32_t r, double now_s)
         if (rank->deal_count == 0 || rank->idle == 0)
             break;
         const struct deal *d = &rank->deals[0];
-        uint32_t tiles = deal_tiles(d), tile = d->begin + (uint32_t)(rank->position % tiles) * d->step, block = (uint32_t)(rank->position / tiles);
+        uint32_t tiles = deal_tiles(d), tile = d->begin + (uint32_t)(rank->position % tiles) * d->step,
+                 block = (uint32_t)(rank->position / tiles);
         double cost_s = unit_cost_s(s, tile, block);
         s->work_s += cost_s;
         push(s, (struct event){.at_s = now_s + cost_s, .kind = UNIT_ENDS, .rank = r, .deal = {tile, block, 1}});
@@ -241,7 +247,10 @@ static void happen(struct simulation *s, struct event *e)
 
 static void simulate(const struct recorded *log, const struct model *m, uint32_t ranks, bool is_tsv)
 {
-    struct simulation s = {.log = log, .model = m, .rank_count = ranks, .ranks = sr_alloc(ranks * sizeof *s.ranks),
+    struct simulation s = {.log = log,
+                           .model = m,
+                           .rank_count = ranks,
+                           .ranks = sr_alloc(ranks * sizeof *s.ranks),
                            .pool = {.tiles = log->tiles * m->pixels, .threads = ranks * m->threads}};
     if (!s.ranks)
         exit(SR_ERROR_RESOURCE);
@@ -254,22 +263,33 @@ static void simulate(const struct recorded *log, const struct model *m, uint32_t
         happen(&s, &e);
     }
     double cores = (double)ranks * m->threads, efficiency = s.work_s / (cores * (s.end_s + m->load_s));
-    printf(is_tsv ? "%u\t%.0f\t%.4f\t%.4f\t%llu\t%.4g\t%.4f\n" : "%8u %8.0f %12.3f s %10.2f %% %12llu %10.2f MB %9.2f %%\n", ranks, cores, s.end_s + m->load_s,
-           efficiency * (is_tsv ? 1 : 100), (unsigned long long)s.messages, s.bytes * (is_tsv ? 1 : 1e-6), s.owner_busy_s / s.end_s * (is_tsv ? 1 : 100));
+    printf(is_tsv ? "%u\t%.0f\t%.4f\t%.4f\t%llu\t%.4g\t%.4f\n"
+                  : "%8u %8.0f %12.3f s %10.2f %% %12llu %10.2f MB %9.2f %%\n",
+           ranks, cores, s.end_s + m->load_s, efficiency * (is_tsv ? 1 : 100), (unsigned long long)s.messages,
+           s.bytes * (is_tsv ? 1 : 1e-6), s.owner_busy_s / s.end_s * (is_tsv ? 1 : 100));
     sr_free(s.heap);
     sr_free(s.ranks);
 }
 
 int main(int argc, char **argv)
 {
-    struct model m = {.latency_s = 2e-6, .bytes_per_s = 1e10, .take_s = -1, .serve_s = 3e-6, .nap_s = 1e-3, .samples = 1, .threads = 1, .pixels = 1};
+    struct model m = {.latency_s = 2e-6,
+                      .bytes_per_s = 1e10,
+                      .take_s = -1,
+                      .serve_s = 3e-6,
+                      .nap_s = 1e-3,
+                      .samples = 1,
+                      .threads = 1,
+                      .pixels = 1};
     const char *ranks = "1,2,3,4", *path = NULL;
     bool is_tsv = false;
     const struct {
         const char *name;
         double *value;
-    } numbers[] = {{"--latency", &m.latency_s}, {"--bandwidth", &m.bytes_per_s}, {"--take", &m.take_s}, {"--serve", &m.serve_s},
-                   {"--nap", &m.nap_s}, {"--load", &m.load_s}, {"--samples", &m.samples}, {"--unit-bytes", &m.unit_B}};
+    } numbers[] = {{"--latency", &m.latency_s}, {"--bandwidth", &m.bytes_per_s},
+                   {"--take", &m.take_s},       {"--serve", &m.serve_s},
+                   {"--nap", &m.nap_s},         {"--load", &m.load_s},
+                   {"--samples", &m.samples},   {"--unit-bytes", &m.unit_B}};
     for (int i = 1; i < argc; ++i) {
         const char *value = i + 1 < argc ? argv[i + 1] : "0";
         bool is_known = false;
@@ -306,8 +326,8 @@ int main(int argc, char **argv)
     }
     log.unit_B = m.unit_B > 0 ? m.unit_B : log.unit_B;
     m.take_s = m.take_s < 0 ? log.take_s : m.take_s;
-    printf(is_tsv ? "ranks\tcores\ttime_s\tefficiency\tmessages\tbytes\trank0\n" : "%8s %8s %14s %12s %12s %13s %11s\n", "ranks", "cores", "time", "efficiency", "messages",
-           "bytes", "rank 0");
+    printf(is_tsv ? "ranks\tcores\ttime_s\tefficiency\tmessages\tbytes\trank0\n" : "%8s %8s %14s %12s %12s %13s %11s\n",
+           "ranks", "cores", "time", "efficiency", "messages", "bytes", "rank 0");
     for (const char *p = ranks; *p; p += strcspn(p, ","), p += *p == ',')
         if (atoi(p) > 0)
             simulate(&log, &m, (uint32_t)atoi(p), is_tsv);

@@ -5,9 +5,10 @@
  *   paths/s of one thread and of all threads, rays/s, the efficiency of all threads, and that of rays alone (what the
  *   machine gives: caches and clocks are shared),
  *   ray-replay efficiency eta = (time of the bare ray caster for the very rays of the render) / (time of the render),
- *   shares of wasted work: scattering vertices without a shadow ray (mirrors among them), and shadow rays that are blocked,
- *   time to read, to build the acceleration structure, from nothing to a first sample of each pixel; peak memory.
- * Each case runs in a process of its own, so that its peak memory is its own. --bsdf times the scattering models instead. */
+ *   shares of wasted work: scattering vertices without a shadow ray (mirrors among them), and shadow rays that are
+ * blocked, time to read, to build the acceleration structure, from nothing to a first sample of each pixel; peak
+ * memory. Each case runs in a process of its own, so that its peak memory is its own. --bsdf times the scattering
+ * models instead. */
 #include "bsdf_bench.h"
 #include "scale_bench.h"
 #include "targets.h"
@@ -90,9 +91,17 @@ static double timed_replay(const struct sr_scene *scene, const struct sr_ray_log
 static struct sr_render_job job_of(const struct sr_import_result *scene, uint32_t seed)
 {
     return (struct sr_render_job){
-        .scene = scene->scene, .sensor = scene->sensor, .filter = scene->filter, .integrator = scene->integrator, .film = scene->film,
-        .sampler = scene->sampler, .seed = seed, .spp = scene->spp, .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
-        .jitter_pixel = true, .jitter_lambda = true,
+        .scene = scene->scene,
+        .sensor = scene->sensor,
+        .filter = scene->filter,
+        .integrator = scene->integrator,
+        .film = scene->film,
+        .sampler = scene->sampler,
+        .seed = seed,
+        .spp = scene->spp,
+        .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
+        .jitter_pixel = true,
+        .jitter_lambda = true,
     };
 }
 
@@ -149,23 +158,29 @@ static int run_case(const struct settings *s, const char *name, const char *path
         bare[i] = timed_replay(scene.scene, &rays, 1);
         bare_all[i] = timed_replay(scene.scene, &rays, threads);
     }
-    double spread = 0, t_one = median(one, s->runs), t_all = median(all, s->runs), t_bare = median(bare, s->runs), t_bare_all = median(bare_all, s->runs);
+    double spread = 0, t_one = median(one, s->runs), t_all = median(all, s->runs), t_bare = median(bare, s->runs),
+           t_bare_all = median(bare_all, s->runs);
     spread = (one[s->runs - 1] - one[0]) / t_one;
     double n_rays = (double)(report.rays + report.shadow_rays), n_shadow = (double)report.shadow_rays;
-    double unlit = 1 - n_shadow / (double)report.vertices, blocked = n_shadow > 0 ? (double)blocked_rays(scene.scene, &rays) / n_shadow : 0;
-    printf("{\"case\": \"%s\", \"width\": %d, \"height\": %d, \"spp\": %u, \"runs\": %d, \"spread\": %.3f, \"paths_per_s_1\": %.0f, \"paths_per_s\": %.0f, "
-           "\"threads\": %d, \"thread_efficiency\": %.3f, \"bare_thread_efficiency\": %.3f, \"rays_per_s_1\": %.0f, \"rays_per_path\": %.3f, \"shadow_rays_per_path\": %.3f, \"unlit_vertices\": %.3f, \"blocked_shadow_rays\": %.3f, \"eta\": %.3f, "
-           "\"bare_ns_per_ray\": %.1f, \"read_s\": %.3f, \"build_s\": %.3f, \"first_pixel_s\": %.3f, \"peak_memory_B\": %llu, \"triangles\": %llu}\n",
-           name, scene.film.width, scene.film.height, scene.spp, s->runs, spread, (double)report.paths / t_one, (double)report.paths / t_all, threads,
-           t_one / (t_all * threads), t_bare / t_bare_all, n_rays / t_one, (double)report.rays / (double)report.paths, n_shadow / (double)report.paths, unlit, blocked,
-           t_bare / t_one, 1e9 * t_bare / n_rays, scene.read_s, counts.build_s, first_pixel_s, (unsigned long long)peak_B, (unsigned long long)counts.triangles);
+    double unlit = 1 - n_shadow / (double)report.vertices,
+           blocked = n_shadow > 0 ? (double)blocked_rays(scene.scene, &rays) / n_shadow : 0;
+    printf(
+        "{\"case\": \"%s\", \"width\": %d, \"height\": %d, \"spp\": %u, \"runs\": %d, \"spread\": %.3f, \"paths_per_s_1\": %.0f, \"paths_per_s\": %.0f, "
+        "\"threads\": %d, \"thread_efficiency\": %.3f, \"bare_thread_efficiency\": %.3f, \"rays_per_s_1\": %.0f, \"rays_per_path\": %.3f, \"shadow_rays_per_path\": %.3f, \"unlit_vertices\": %.3f, \"blocked_shadow_rays\": %.3f, \"eta\": %.3f, "
+        "\"bare_ns_per_ray\": %.1f, \"read_s\": %.3f, \"build_s\": %.3f, \"first_pixel_s\": %.3f, \"peak_memory_B\": %llu, \"triangles\": %llu}\n",
+        name, scene.film.width, scene.film.height, scene.spp, s->runs, spread, (double)report.paths / t_one,
+        (double)report.paths / t_all, threads, t_one / (t_all * threads), t_bare / t_bare_all, n_rays / t_one,
+        (double)report.rays / (double)report.paths, n_shadow / (double)report.paths, unlit, blocked, t_bare / t_one,
+        1e9 * t_bare / n_rays, scene.read_s, counts.build_s, first_pixel_s, (unsigned long long)peak_B,
+        (unsigned long long)counts.triangles);
     sr_free(rays.rays);
     sr_import_result_free(&scene);
     return 0;
 }
 
 /* Reading and building alone, of real scenes; the rows of docs/performance.md. */
-static const char *const large_scenes[] = {"bathroom/scene-v4", "staircase2/scene-v4", "coffee/scene-v4", "teapot-full/scene-v4", "metal-instances/metal"};
+static const char *const large_scenes[] = {"bathroom/scene-v4", "staircase2/scene-v4", "coffee/scene-v4",
+                                           "teapot-full/scene-v4", "metal-instances/metal"};
 
 static int run_load(const char *name, const char *path)
 {
@@ -186,8 +201,10 @@ static int run_load(const char *name, const char *path)
     uint64_t peak_B = sr_peak_memory_B();
     struct sr_render_job job = job_of(&scene, 1);
     double first_pixel_s = time_to_first_pixel(&job, start_s);
-    printf("{\"case\": \"load %s\", \"load_s\": %.3f, \"cpu_s\": %.3f, \"read_s\": %.3f, \"build_s\": %.3f, \"first_pixel_s\": %.3f, \"threads\": %d, \"peak_memory_B\": %llu, \"triangles\": %llu}\n", name, load_s,
-           cpu_s, scene.read_s, counts.build_s, first_pixel_s, sr_thread_count(), (unsigned long long)peak_B, (unsigned long long)counts.triangles);
+    printf(
+        "{\"case\": \"load %s\", \"load_s\": %.3f, \"cpu_s\": %.3f, \"read_s\": %.3f, \"build_s\": %.3f, \"first_pixel_s\": %.3f, \"threads\": %d, \"peak_memory_B\": %llu, \"triangles\": %llu}\n",
+        name, load_s, cpu_s, scene.read_s, counts.build_s, first_pixel_s, sr_thread_count(), (unsigned long long)peak_B,
+        (unsigned long long)counts.triangles);
     sr_import_result_free(&scene);
     return 0;
 }
@@ -248,26 +265,50 @@ static bool make_scenes(const char *folder)
 int main(int argc, char **argv)
 {
     static const struct option options[] = {
-        {"case", required_argument, NULL, 'c'}, {"scene", required_argument, NULL, 'f'}, {"spp", required_argument, NULL, 's'}, {"size", required_argument, NULL, 'z'},
-        {"runs", required_argument, NULL, 'r'}, {"folder", required_argument, NULL, 'd'}, {"bsdf", optional_argument, NULL, 'b'}, {"scale", optional_argument, NULL, 'g'}, {"draw", required_argument, NULL, 'w'}, {"figure", required_argument, NULL, 'i'}, {"help", no_argument, NULL, 'h'}, {NULL, 0, NULL, 0},
+        {"case", required_argument, NULL, 'c'}, {"scene", required_argument, NULL, 'f'},
+        {"spp", required_argument, NULL, 's'},  {"size", required_argument, NULL, 'z'},
+        {"runs", required_argument, NULL, 'r'}, {"folder", required_argument, NULL, 'd'},
+        {"bsdf", optional_argument, NULL, 'b'}, {"scale", optional_argument, NULL, 'g'},
+        {"draw", required_argument, NULL, 'w'}, {"figure", required_argument, NULL, 'i'},
+        {"help", no_argument, NULL, 'h'},       {NULL, 0, NULL, 0},
     };
     struct settings s = {.folder = SR_BENCH_BUILD_DIR "/bench-scenes", .spp = 16, .size = 256, .runs = 3, .seed = 1};
     const char *scale = NULL, *figure = NULL, *draw = NULL;
     int option;
     while ((option = getopt_long(argc, argv, "h", options, NULL)) != -1)
         switch (option) {
-        case 'c': s.only = optarg; break;
-        case 'f': s.scene = optarg; break;
-        case 's': s.spp = (uint32_t)strtoul(optarg, NULL, 10); break;
-        case 'z': s.size = (uint32_t)strtoul(optarg, NULL, 10); break;
-        case 'r': s.runs = (int)strtol(optarg, NULL, 10); break;
-        case 'd': s.folder = optarg; break;
-        case 'b': return bench_bsdfs(optarg);
-        case 'g': scale = optarg ? optarg : ""; break;
-        case 'w': draw = optarg; break;
-        case 'i': figure = optarg; break;
+        case 'c':
+            s.only = optarg;
+            break;
+        case 'f':
+            s.scene = optarg;
+            break;
+        case 's':
+            s.spp = (uint32_t)strtoul(optarg, NULL, 10);
+            break;
+        case 'z':
+            s.size = (uint32_t)strtoul(optarg, NULL, 10);
+            break;
+        case 'r':
+            s.runs = (int)strtol(optarg, NULL, 10);
+            break;
+        case 'd':
+            s.folder = optarg;
+            break;
+        case 'b':
+            return bench_bsdfs(optarg);
+        case 'g':
+            scale = optarg ? optarg : "";
+            break;
+        case 'w':
+            draw = optarg;
+            break;
+        case 'i':
+            figure = optarg;
+            break;
         default:
-            printf("Usage: sr_bench --bsdf[=MODEL]\n       sr_bench --scale[=triangles|lights|depth|pixels|wavelengths|threads] [--runs N]\n       sr_bench --draw LINES-OF-SCALE [--figure FILE.svg|.png]\n       sr_bench [--case cornell|mesh|glossy|emitters|load] [--scene FILE] [--spp N] [--size PIXELS] [--runs N] [--folder SCENES]\n");
+            printf(
+                "Usage: sr_bench --bsdf[=MODEL]\n       sr_bench --scale[=triangles|lights|depth|pixels|wavelengths|threads] [--runs N]\n       sr_bench --draw LINES-OF-SCALE [--figure FILE.svg|.png]\n       sr_bench [--case cornell|mesh|glossy|emitters|load] [--scene FILE] [--spp N] [--size PIXELS] [--runs N] [--folder SCENES]\n");
             return option == 'h' ? 0 : 2;
         }
     if (draw)

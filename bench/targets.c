@@ -37,15 +37,17 @@ void print_targets(FILE *out, json_t *const *lines, size_t count)
         for (size_t i = 0; i < count; ++i) {
             const struct target *a = &targets[t];
             const char *name = json_string_value(json_object_get(lines[i], "case"));
-            const json_t *number = json_object_get(lines[i], a->number), *per = a->per ? json_object_get(lines[i], a->per) : NULL;
-            if (!name || strcmp(name, a->name) != 0 || !json_is_number(number) || (a->per && !(json_number_value(per) > 0)))
+            const json_t *number = json_object_get(lines[i], a->number),
+                         *per = a->per ? json_object_get(lines[i], a->per) : NULL;
+            if (!name || strcmp(name, a->name) != 0 || !json_is_number(number) ||
+                (a->per && !(json_number_value(per) > 0)))
                 continue;
             double reached = json_number_value(number) / (per ? json_number_value(per) : 1);
             if (!has_any)
                 fprintf(out, "\n%-28s %-10s %14s %9s\n", "what", "case", "wanted", "reached");
             has_any = true;
-            fprintf(out, "%-28s %-10s %s %11.4g %9.3g  %s %s\n", a->what, a->name, a->is_most ? "<=" : ">=", a->wanted, reached, a->unit,
-                    (a->is_most ? reached <= a->wanted : reached >= a->wanted) ? "" : "MISSED");
+            fprintf(out, "%-28s %-10s %s %11.4g %9.3g  %s %s\n", a->what, a->name, a->is_most ? "<=" : ">=", a->wanted,
+                    reached, a->unit, (a->is_most ? reached <= a->wanted : reached >= a->wanted) ? "" : "MISSED");
         }
     if (has_any)
         fputs(elsewhere, out);

@@ -10,7 +10,8 @@ int main(void)
 {
     char error[256];
     struct sr_brdf *paint;
-    if (sr_brdf_create("ward_gmd reflectance=.3 specular=.1 alpha_x=.1 alpha_y=.2", &paint, error, sizeof error) != SR_OK)
+    if (sr_brdf_create("ward_gmd reflectance=.3 specular=.1 alpha_x=.1 alpha_y=.2", &paint, error, sizeof error) !=
+        SR_OK)
         return fprintf(stderr, "%s\n", error), 1;
 
     struct sr_brdf_parameter p;

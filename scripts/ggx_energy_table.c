@@ -7,10 +7,10 @@
  *
  *     E(z) = INTEGRAL p(m) (F G2 / G1 + (1 - F) G2' / G1) dm    [1]
  *
- * over the facets as the viewer sees them, p(m), by the map of the square on them (Dupuy & Benyoub 2023): the half turn by the
- * midpoint rule, and on each of its lines panels of Gauss's rule, split where the reflected or the refracted direction comes to
- * lie in the surface and where total reflection begins. Metal: F = 1. Glass: Fresnel's F, G2 = 1 / (1 + a + b), G2' = B(1 + a,
- * 1 + b) with Smith's a and b (facets_interface.h). */
+ * over the facets as the viewer sees them, p(m), by the map of the square on them (Dupuy & Benyoub 2023): the half turn
+ * by the midpoint rule, and on each of its lines panels of Gauss's rule, split where the reflected or the refracted
+ * direction comes to lie in the surface and where total reflection begins. Metal: F = 1. Glass: Fresnel's F, G2 = 1 /
+ * (1 + a + b), G2' = B(1 + a, 1 + b) with Smith's a and b (facets_interface.h). */
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT */
-/* Makes src/bsdf/sheen_ltc_table.h: cc -O3 scripts/sheen_table.c -o /tmp/sheen_table -lm && /tmp/sheen_table > src/bsdf/sheen_ltc_table.h
+/* Makes src/bsdf/sheen_ltc_table.h: cc -O3 scripts/sheen_table.c -o /tmp/sheen_table -lm && /tmp/sheen_table >
+ * src/bsdf/sheen_ltc_table.h
  *
- * For each roughness alpha and viewer's cosine z light is followed at random through a layer of fibres that stand on a black
- * ground: thickness 1, density 1, albedo 1, mirroring microflakes of the SGGX distribution with S = diag(1, 1, sigma^2),
- * sigma = alpha^2 (Zeltner, Burley & Chiang 2022; Heitz et al. 2015). What leaves above gives the share R, and the linear
- * transformation that makes the directions likeliest:
+ * For each roughness alpha and viewer's cosine z light is followed at random through a layer of fibres that stand on a
+ * black ground: thickness 1, density 1, albedo 1, mirroring microflakes of the SGGX distribution with S = diag(1, 1,
+ * sigma^2), sigma = alpha^2 (Zeltner, Burley & Chiang 2022; Heitz et al. 2015). What leaves above gives the share R,
+ * and the linear transformation that makes the directions likeliest:
  *
  *     p(w) = w.z A^2 / (pi |(A w.x + B w.z, A w.y, w.z)|^4)   [1/sr],     maximum of SUM weight ln p
  *
- * found by iteration: with u = weight / |...|^2, B = -A SUM u x z / SUM u z^2, and A likewise. To standard error: how far the
- * fit lies from what was simulated. */
+ * found by iteration: with u = weight / |...|^2, B = -A SUM u x z / SUM u z^2, and A likewise. To standard error: how
+ * far the fit lies from what was simulated. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -36,7 +37,8 @@ static struct vec unit(struct vec v)
     return (struct vec){v.x * l, v.y * l, v.z * l};
 }
 
-/* A mirroring flake as w sees them: a point of the half sphere that faces S^1/2 w, uniform as seen; its normal by S^1/2. */
+/* A mirroring flake as w sees them: a point of the half sphere that faces S^1/2 w, uniform as seen; its normal by
+ * S^1/2. */
 static struct vec scattered(struct vec w, double sigma, double u, double v)
 {
     struct vec c = unit((struct vec){w.x, w.y, sigma * w.z});

@@ -61,7 +61,8 @@ void test_skip(const char *why)
 void test_near(const char *file, int line, const char *what, double value, double expected, double tolerance)
 {
     if (!(fabs(value - expected) <= tolerance))
-        test_fail(file, line, "%s = %.12g, expected %.12g within %.3g, off by %.3g", what, value, expected, tolerance, value - expected);
+        test_fail(file, line, "%s = %.12g, expected %.12g within %.3g, off by %.3g", what, value, expected, tolerance,
+                  value - expected);
 }
 
 void test_equal_int(const char *file, int line, const char *what, long long value, long long expected)
@@ -79,7 +80,8 @@ void test_equal_text(const char *file, int line, const char *what, const char *v
 void test_mean(const char *file, int line, const char *what, const struct sr_tally *tally, double expected)
 {
     double se = sr_tally_standard_error(tally);
-    double rounding = 4 * (double)SR_MACHINE_EPSILON * fabs(expected); // floats are added: a constant is never off by less
+    double rounding =
+        4 * (double)SR_MACHINE_EPSILON * fabs(expected); // floats are added: a constant is never off by less
     if (tally->n < 100 || !(fabs(tally->mean - expected) <= 4.9 * se + rounding))
         test_fail(file, line, "%s: mean %.9g +- %.3g (n = %llu), expected %.9g, z = %.2f", what, tally->mean, se,
                   (unsigned long long)tally->n, expected, (tally->mean - expected) / se);

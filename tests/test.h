@@ -6,7 +6,8 @@
  *         EXPECT_NEAR(value, 0.5, 1e-7);
  *     }
  *
- * Every *.c of a folder is linked into one program; its tests register themselves and run in the order of their names. */
+ * Every *.c of a folder is linked into one program; its tests register themselves and run in the order of their names.
+ */
 #ifndef SR_TEST_H
 #define SR_TEST_H
 
@@ -43,10 +44,13 @@ void test_skip(const char *why) __attribute__((noreturn));
     } while (0)
 
 /* |value - expected| <= tolerance (absolute), or a failure that tells both */
-#define EXPECT_NEAR(value, expected, tolerance) test_near(__FILE__, __LINE__, #value, (double)(value), (double)(expected), (double)(tolerance))
+#define EXPECT_NEAR(value, expected, tolerance)                                                                        \
+    test_near(__FILE__, __LINE__, #value, (double)(value), (double)(expected), (double)(tolerance))
 #define EXPECT_RELATIVE(value, expected, tolerance)                                                                    \
-    test_near(__FILE__, __LINE__, #value, (double)(value), (double)(expected), fabs((double)(expected)) * (double)(tolerance))
-#define EXPECT_EQUAL_INT(value, expected) test_equal_int(__FILE__, __LINE__, #value, (long long)(value), (long long)(expected))
+    test_near(__FILE__, __LINE__, #value, (double)(value), (double)(expected),                                         \
+              fabs((double)(expected)) * (double)(tolerance))
+#define EXPECT_EQUAL_INT(value, expected)                                                                              \
+    test_equal_int(__FILE__, __LINE__, #value, (long long)(value), (long long)(expected))
 #define EXPECT_EQUAL_TEXT(value, expected) test_equal_text(__FILE__, __LINE__, #value, value, expected)
 /* the tally's mean against its expectation: |z| < 4.9 (one false alarm in a million), and at least n = 100 draws */
 #define EXPECT_MEAN(tally, expected) test_mean(__FILE__, __LINE__, #tally, &(tally), (double)(expected))

@@ -25,7 +25,8 @@ typedef enum sr_status {
 
 /* The library's version, such as "0.1.0". */
 SR_API const char *sr_version(void);
-/* What the processor must know for the library that is running: "x86-64-v2", "x86-64-v3", "x86-64-v4", or another kind's name. */
+/* What the processor must know for the library that is running: "x86-64-v2", "x86-64-v3", "x86-64-v4", or another
+ * kind's name. */
 SR_API const char *sr_isa(void);
 
 #ifdef __cplusplus

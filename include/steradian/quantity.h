@@ -42,8 +42,8 @@ struct sr_quantity {
 SR_API double sr_quantity_expanded(const struct sr_quantity *q, double level /* [1] such as 0.95 */);
 /* "lx", "cd/m^2", "scotopic lx", "W/(m^2 sr nm)", "umol/(m^2 s)"; cut off at size. Returns text. */
 SR_API char *sr_unit_text(struct sr_unit unit, char *text, size_t size);
-/* "E = 19.894 lx ± 0.021 lx (95 %, k = 2.13, ν = 15)" in UTF-8, rounded to what the uncertainty supports; NULL name: from the
- * value on. Returns text. */
+/* "E = 19.894 lx ± 0.021 lx (95 %, k = 2.13, ν = 15)" in UTF-8, rounded to what the uncertainty supports; NULL name:
+ * from the value on. Returns text. */
 SR_API char *sr_quantity_text(const char *name, const struct sr_quantity *q, char *text, size_t size);
 
 #ifdef __cplusplus

@@ -19,10 +19,11 @@ extern "C" {
 
 struct sr_world;
 
-/* Reads a scene file; "-" is standard input. warn may be NULL; it is told one sentence at a time. On failure *world is NULL
- * and error (if not NULL, of size error_size) holds one sentence: file:line:column: what, and what was expected. */
-SR_API sr_status sr_world_load(const char *path, void (*warn)(void *user, const char *text), void *user, struct sr_world **world,
-                               char *error, size_t error_size);
+/* Reads a scene file; "-" is standard input. warn may be NULL; it is told one sentence at a time. On failure *world is
+ * NULL and error (if not NULL, of size error_size) holds one sentence: file:line:column: what, and what was expected.
+ */
+SR_API sr_status sr_world_load(const char *path, void (*warn)(void *user, const char *text), void *user,
+                               struct sr_world **world, char *error, size_t error_size);
 SR_API void sr_world_destroy(struct sr_world *world); /* NULL is fine */
 
 /* How to render. Zeroed members leave the scene's own settings: struct sr_render_settings s = {0}; is always valid,
@@ -44,12 +45,13 @@ struct sr_render_settings {
 };
 
 /* Renders a new picture: R G B in cd/m^2, SE.R SE.G SE.B, samples. SR_CANCELLED: the picture holds what there is. */
-SR_API sr_status sr_world_render(const struct sr_world *world, const struct sr_render_settings *settings, struct sr_picture **picture,
-                                 char *error, size_t error_size);
+SR_API sr_status sr_world_render(const struct sr_world *world, const struct sr_render_settings *settings,
+                                 struct sr_picture **picture, char *error, size_t error_size);
 
 /* ---- meters ----
  *
- * A scene file may hold meters, in comments (docs/guide/measure.md): they are numbered from 0 in the order of the file. */
+ * A scene file may hold meters, in comments (docs/guide/measure.md): they are numbered from 0 in the order of the file.
+ */
 
 SR_API size_t sr_world_meter_count(const struct sr_world *world);
 
@@ -73,9 +75,9 @@ struct sr_measure_options {
     enum sr_system system; /* whose uncertainty counts, and which a map holds; 0 is radiometric */
     bool has_seed;
     uint32_t seed;
-    int threads;           /* 0: all processors */
-    float lambda_min_nm;   /* [nm] 0: 360 */
-    float lambda_max_nm;   /* [nm] 0: 830 */
+    int threads;         /* 0: all processors */
+    float lambda_min_nm; /* [nm] 0: 360 */
+    float lambda_max_nm; /* [nm] 0: 830 */
     /* Spectral readings at first, first + step, …, weighed by a triangle of that width at half its height (0: step). */
     double spectrum_first_nm, spectrum_step_nm, spectrum_fwhm_nm; /* [nm] */
     size_t spectrum_count;
@@ -83,24 +85,27 @@ struct sr_measure_options {
 };
 
 struct sr_world_reading {
-    struct sr_quantity value[SR_SYSTEM_COUNT]; /* in every system; nothing found: 0, with `upper` where a bound is known */
-    uint64_t samples, samples_with_light;      /* that the reading rests on */
-    double elapsed_s;                          /* [s] */
-    bool is_on_target;                         /* true also where no error was asked for */
-    char remarks[1024];                        /* sentences, one a line, about what cannot be trusted; or "" */
+    struct sr_quantity
+        value[SR_SYSTEM_COUNT];           /* in every system; nothing found: 0, with `upper` where a bound is known */
+    uint64_t samples, samples_with_light; /* that the reading rests on */
+    double elapsed_s;                     /* [s] */
+    bool is_on_target;                    /* true also where no error was asked for */
+    char remarks[1024];                   /* sentences, one a line, about what cannot be trusted; or "" */
 };
 
 /* Measures one meter. */
-SR_API sr_status sr_world_measure(const struct sr_world *world, size_t index, const struct sr_measure_options *options, struct sr_world_reading *reading,
-                                  char *error, size_t error_size);
+SR_API sr_status sr_world_measure(const struct sr_world *world, size_t index, const struct sr_measure_options *options,
+                                  struct sr_world_reading *reading, char *error, size_t error_size);
 /* A map as a picture: Y in the options' system and SE.Y, its standard error. */
-SR_API sr_status sr_world_measure_map(const struct sr_world *world, size_t index, const struct sr_measure_options *options, struct sr_picture **picture,
+SR_API sr_status sr_world_measure_map(const struct sr_world *world, size_t index,
+                                      const struct sr_measure_options *options, struct sr_picture **picture,
                                       char *error, size_t error_size);
 
 /* Illuminance and irradiance on a surface element at point_m with that normal (any length but zero), by at least 2
  * replicates of samples each. Either may be NULL. */
-SR_API sr_status sr_world_irradiance(const struct sr_world *world, const double point_m[3], const double normal[3], uint32_t samples,
-                                     uint32_t replicates, struct sr_quantity *E_v /* [lx] */, struct sr_quantity *E_e /* [W/m^2] */);
+SR_API sr_status sr_world_irradiance(const struct sr_world *world, const double point_m[3], const double normal[3],
+                                     uint32_t samples, uint32_t replicates, struct sr_quantity *E_v /* [lx] */,
+                                     struct sr_quantity *E_e /* [W/m^2] */);
 
 #ifdef __cplusplus
 }

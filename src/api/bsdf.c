@@ -62,7 +62,8 @@ bool sr_brdf_model_parameter(const char *model, int index, struct sr_brdf_parame
     if (!m || index < 0)
         return false;
     const struct sr_param *p = &m->params[index];
-    *parameter = (struct sr_brdf_parameter){public_kind(p->kind), p->name, p->unit, p->text, p->min, p->max, p->initial};
+    *parameter =
+        (struct sr_brdf_parameter){public_kind(p->kind), p->name, p->unit, p->text, p->min, p->max, p->initial};
     return true;
 }
 
@@ -111,8 +112,8 @@ static sr_vec3 direction(const float w[3])
     return (sr_vec3){w[0], w[1], w[2]};
 }
 
-void sr_brdf_evaluate(const struct sr_brdf *brdf, double lambda_nm, size_t count, const float (*wo)[3], const float (*wi)[3],
-                      float *f, float *pdf)
+void sr_brdf_evaluate(const struct sr_brdf *brdf, double lambda_nm, size_t count, const float (*wo)[3],
+                      const float (*wi)[3], float *f, float *pdf)
 {
     struct sr_specimen_at at;
     for (size_t i = 0; i < count; ++i) {
@@ -143,14 +144,15 @@ void sr_brdf_draw(const struct sr_brdf *brdf, double lambda_nm, size_t count, co
 
 /* ---- reflectance ---- */
 
-sr_status sr_brdf_reflectance(const struct sr_brdf *brdf, double lambda_nm, const char *from, const char *to, double tolerance,
-                              struct sr_brdf_reflectance *out, char *error, size_t error_size)
+sr_status sr_brdf_reflectance(const struct sr_brdf *brdf, double lambda_nm, const char *from, const char *to,
+                              double tolerance, struct sr_brdf_reflectance *out, char *error, size_t error_size)
 {
     struct sr_error e = {0};
     struct sr_beam beams[2];
     struct sr_reflectance r;
     if (sr_beam_read(from, &beams[0], &e) == SR_OK && sr_beam_read(to, &beams[1], &e) == SR_OK &&
-        sr_reflectance_cubature(&brdf->specimen, SR_BLACK + (float)lambda_nm, &beams[0], &beams[1], tolerance, &r, &e) == SR_OK)
+        sr_reflectance_cubature(&brdf->specimen, SR_BLACK + (float)lambda_nm, &beams[0], &beams[1], tolerance, &r,
+                                &e) == SR_OK)
         *out = (struct sr_brdf_reflectance){r.name, r.unit, r.value[0], r.error[0], r.factor[0]};
     return e.status == SR_OK ? SR_OK : api_tell(&e, error, error_size);
 }
@@ -179,8 +181,8 @@ double sr_brdf_albedo(const struct sr_brdf *brdf, double lambda_nm, double theta
 /* ---- the certificate ---- */
 
 sr_status sr_brdf_check(const struct sr_brdf *brdf, uint32_t sets, uint32_t seed,
-                        void (*tell)(void *user, const char *check, enum sr_brdf_verdict verdict, double measured, double limit,
-                                     const char *text),
+                        void (*tell)(void *user, const char *check, enum sr_brdf_verdict verdict, double measured,
+                                     double limit, const char *text),
                         void *user, char *error, size_t error_size)
 {
     struct sr_error e = {0};

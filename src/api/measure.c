@@ -18,24 +18,32 @@ bool sr_world_meter(const struct sr_world *world, size_t index, struct sr_world_
     if (index >= world->import.meter_count)
         return false;
     const struct sr_meter *m = &world->import.meters[index];
-    *out = (struct sr_world_meter){.name = sr_meter_common(m)->name, .kind = m->model->name, .quantity = m->model->what, .definition = m->model->law};
+    *out = (struct sr_world_meter){.name = sr_meter_common(m)->name,
+                                   .kind = m->model->name,
+                                   .quantity = m->model->what,
+                                   .definition = m->model->law};
     if (m->model->raster)
         m->model->raster(m->self, &out->width, &out->height);
     return true;
 }
 
-static sr_status settle(const struct sr_world *world, size_t index, const struct sr_measure_options *o, struct sr_render_job *job,
-                        struct sr_measure_settings *s, struct sr_error *error)
+static sr_status settle(const struct sr_world *world, size_t index, const struct sr_measure_options *o,
+                        struct sr_render_job *job, struct sr_measure_settings *s, struct sr_error *error)
 {
     *job = api_job(world);
     job->seed = o->has_seed ? o->seed : job->seed;
     job->threads = o->threads;
     job->lambda.lo = o->lambda_min_nm > 0 ? o->lambda_min_nm : job->lambda.lo;
     job->lambda.hi = o->lambda_max_nm > 0 ? o->lambda_max_nm : job->lambda.hi;
-    *s = (struct sr_measure_settings){.samples = o->samples, .replicates = o->replicates, .error = o->error, .time_s = o->time_s, .system = o->system,
+    *s = (struct sr_measure_settings){.samples = o->samples,
+                                      .replicates = o->replicates,
+                                      .error = o->error,
+                                      .time_s = o->time_s,
+                                      .system = o->system,
                                       .stream = (uint32_t)index};
     if (index >= world->import.meter_count)
-        return sr_fail(error, SR_ERROR_USAGE, "there is no meter %zu: the scene has %u, numbered from 0", index, (unsigned)world->import.meter_count);
+        return sr_fail(error, SR_ERROR_USAGE, "there is no meter %zu: the scene has %u, numbered from 0", index,
+                       (unsigned)world->import.meter_count);
     if ((unsigned)o->system >= SR_SYSTEM_COUNT)
         return sr_fail(error, SR_ERROR_USAGE, "there is no system %d", (int)o->system);
     if (api_check_lambda(job, error) != SR_OK || o->spectrum_count == 0)
@@ -43,12 +51,13 @@ static sr_status settle(const struct sr_world *world, size_t index, const struct
     double last = o->spectrum_first_nm + o->spectrum_step_nm * ((double)o->spectrum_count - 1);
     if (!o->spectrum)
         return sr_fail(error, SR_ERROR_USAGE, "a spectrum of %zu readings needs room for them", o->spectrum_count);
-    return sr_spectrometer_prepare(o->spectrum_first_nm, o->spectrum_step_nm, last, o->spectrum_fwhm_nm > 0 ? o->spectrum_fwhm_nm : NAN, SR_BAND_TRIANGULAR,
+    return sr_spectrometer_prepare(o->spectrum_first_nm, o->spectrum_step_nm, last,
+                                   o->spectrum_fwhm_nm > 0 ? o->spectrum_fwhm_nm : NAN, SR_BAND_TRIANGULAR,
                                    &s->spectrometer, error);
 }
 
-sr_status sr_world_measure(const struct sr_world *world, size_t index, const struct sr_measure_options *options, struct sr_world_reading *reading, char *error,
-                           size_t error_size)
+sr_status sr_world_measure(const struct sr_world *world, size_t index, const struct sr_measure_options *options,
+                           struct sr_world_reading *reading, char *error, size_t error_size)
 {
     static const struct sr_measure_options defaults;
     const struct sr_measure_options *o = options ? options : &defaults;
@@ -58,7 +67,8 @@ sr_status sr_world_measure(const struct sr_world *world, size_t index, const str
     struct sr_measurement m;
     struct sr_arena arena = {0};
     memset(reading, 0, sizeof *reading);
-    if (settle(world, index, o, &job, &s, &e) == SR_OK && sr_measure(&job, &world->import.meters[index], &s, &arena, &m, &e) == SR_OK) {
+    if (settle(world, index, o, &job, &s, &e) == SR_OK &&
+        sr_measure(&job, &world->import.meters[index], &s, &arena, &m, &e) == SR_OK) {
         memcpy(reading->value, m.value, sizeof reading->value);
         reading->samples = m.samples;
         reading->samples_with_light = m.hits;
@@ -66,7 +76,8 @@ sr_status sr_world_measure(const struct sr_world *world, size_t index, const str
         reading->is_on_target = m.is_on_target;
         size_t used = 0;
         for (uint32_t i = 0; i < m.remark_count && used < sizeof reading->remarks; ++i)
-            used += (size_t)snprintf(reading->remarks + used, sizeof reading->remarks - used, "%s%s", i ? "\n" : "", m.remarks[i]);
+            used += (size_t)snprintf(reading->remarks + used, sizeof reading->remarks - used, "%s%s", i ? "\n" : "",
+                                     m.remarks[i]);
         for (uint32_t k = 0; k < s.spectrometer.count && k < o->spectrum_count; ++k)
             o->spectrum[k] = m.spectrum[k];
     }
@@ -74,8 +85,8 @@ sr_status sr_world_measure(const struct sr_world *world, size_t index, const str
     return api_tell(&e, error, error_size);
 }
 
-sr_status sr_world_measure_map(const struct sr_world *world, size_t index, const struct sr_measure_options *options, struct sr_picture **picture, char *error,
-                               size_t error_size)
+sr_status sr_world_measure_map(const struct sr_world *world, size_t index, const struct sr_measure_options *options,
+                               struct sr_picture **picture, char *error, size_t error_size)
 {
     static const struct sr_measure_options defaults;
     struct sr_error e = {0};

@@ -17,7 +17,8 @@ static void pass_on(void *user, enum sr_severity severity, const char *text)
         l->warn(l->user, text);
 }
 
-sr_status sr_world_load(const char *path, void (*warn)(void *user, const char *text), void *user, struct sr_world **world, char *error, size_t error_size)
+sr_status sr_world_load(const char *path, void (*warn)(void *user, const char *text), void *user,
+                        struct sr_world **world, char *error, size_t error_size)
 {
     struct sr_error e = {0};
     struct listener listener = {warn, user};
@@ -47,8 +48,18 @@ struct sr_render_job api_job(const struct sr_world *world)
 {
     const struct sr_import_result *i = &world->import;
     return (struct sr_render_job){
-        .scene = i->scene, .origin = {i->origin[0], i->origin[1], i->origin[2]}, .sensor = i->sensor, .filter = i->filter, .integrator = i->integrator, .film = i->film, .sampler = i->sampler,
-        .seed = i->seed, .spp = i->spp, .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX}, .jitter_pixel = i->jitter_pixel, .jitter_lambda = i->jitter_lambda,
+        .scene = i->scene,
+        .origin = {i->origin[0], i->origin[1], i->origin[2]},
+        .sensor = i->sensor,
+        .filter = i->filter,
+        .integrator = i->integrator,
+        .film = i->film,
+        .sampler = i->sampler,
+        .seed = i->seed,
+        .spp = i->spp,
+        .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
+        .jitter_pixel = i->jitter_pixel,
+        .jitter_lambda = i->jitter_lambda,
     };
 }
 
@@ -56,7 +67,8 @@ sr_status api_check_lambda(const struct sr_render_job *job, struct sr_error *err
 {
     if (job->lambda.lo >= 100 && job->lambda.lo < job->lambda.hi && job->lambda.hi <= 20000)
         return SR_OK;
-    return sr_fail(error, SR_ERROR_USAGE, "wavelengths from %g to %g nm: 100 <= min < max <= 20000 was expected", (double)job->lambda.lo, (double)job->lambda.hi);
+    return sr_fail(error, SR_ERROR_USAGE, "wavelengths from %g to %g nm: 100 <= min < max <= 20000 was expected",
+                   (double)job->lambda.lo, (double)job->lambda.hi);
 }
 
 struct caller {
@@ -71,7 +83,8 @@ static void ask_caller(void *user, const struct sr_render_progress *p)
         atomic_store(&c->stop, true);
 }
 
-sr_status sr_world_render(const struct sr_world *world, const struct sr_render_settings *settings, struct sr_picture **picture, char *error, size_t error_size)
+sr_status sr_world_render(const struct sr_world *world, const struct sr_render_settings *settings,
+                          struct sr_picture **picture, char *error, size_t error_size)
 {
     struct sr_error e = {0};
     struct sr_render_settings none = {0};
@@ -107,8 +120,8 @@ sr_status sr_world_render(const struct sr_world *world, const struct sr_render_s
     return status;
 }
 
-sr_status sr_world_irradiance(const struct sr_world *world, const double point_m[3], const double normal[3], uint32_t samples, uint32_t replicates,
-                              struct sr_quantity *E_v, struct sr_quantity *E_e)
+sr_status sr_world_irradiance(const struct sr_world *world, const double point_m[3], const double normal[3],
+                              uint32_t samples, uint32_t replicates, struct sr_quantity *E_v, struct sr_quantity *E_e)
 {
     struct sr_render_job job = api_job(world);
     sr_vec3 p = sr_render_place(&job, point_m), n = {(float)normal[0], (float)normal[1], (float)normal[2]};
@@ -118,8 +131,14 @@ sr_status sr_world_irradiance(const struct sr_world *world, const double point_m
     if (isnan(E.E_v))
         return SR_ERROR_RESOURCE;
     if (E_v)
-        *E_v = (struct sr_quantity){.value = E.E_v, .u = E.E_v_error, .degrees = E.degrees, .unit = sr_unit_of(SR_KIND_FLUX_DENSITY, SR_PHOTOPIC, false)};
+        *E_v = (struct sr_quantity){.value = E.E_v,
+                                    .u = E.E_v_error,
+                                    .degrees = E.degrees,
+                                    .unit = sr_unit_of(SR_KIND_FLUX_DENSITY, SR_PHOTOPIC, false)};
     if (E_e)
-        *E_e = (struct sr_quantity){.value = E.E_e, .u = E.E_e_error, .degrees = E.degrees, .unit = sr_unit_of(SR_KIND_FLUX_DENSITY, SR_RADIOMETRIC, false)};
+        *E_e = (struct sr_quantity){.value = E.E_e,
+                                    .u = E.E_e_error,
+                                    .degrees = E.degrees,
+                                    .unit = sr_unit_of(SR_KIND_FLUX_DENSITY, SR_RADIOMETRIC, false)};
     return SR_OK;
 }

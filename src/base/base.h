@@ -47,7 +47,8 @@ struct sr_location {
 /* ---- memory: malloc is called in memory.c and nowhere else ---- */
 
 void *sr_alloc(size_t size); // 64-byte aligned, zeroed; NULL when there is no memory (or size is absurd)
-void *sr_realloc(void *p, size_t old_size, size_t new_size); // the same; grown bytes are zeroed; on failure p stays valid
+void *sr_realloc(void *p, size_t old_size,
+                 size_t new_size); // the same; grown bytes are zeroed; on failure p stays valid
 void sr_free(void *p);
 uint64_t sr_alloc_count(void); // how often sr_alloc and sr_realloc have been called by this process
 /* For tests: what has not been freed; and of the allocations to come, `count` fail after the next `after` of them. */
@@ -58,7 +59,7 @@ bool sr_alloc_allowed(void); // counts one that a library makes by itself; false
 /* A place for things that are freed together. Zeroed = empty and valid. */
 struct sr_arena {
     struct sr_arena_block *blocks;
-    size_t used; // [B] in the newest block
+    size_t used;  // [B] in the newest block
     size_t total; // [B] handed out
 };
 void *sr_arena_alloc(struct sr_arena *arena, size_t size); // 64-byte aligned, zeroed; NULL when there is no memory
@@ -86,8 +87,8 @@ void sr_array_free(struct sr_array *array);
 
 /* ---- files ---- */
 
-/* Reads a whole file, unpacking gzip by its magic bytes; "-" is standard input. The bytes are followed by one NUL that is
- * not counted. Refuses directories, and gzip that unpacks to more than max_size. Free *data with sr_free. */
+/* Reads a whole file, unpacking gzip by its magic bytes; "-" is standard input. The bytes are followed by one NUL that
+ * is not counted. Refuses directories, and gzip that unpacks to more than max_size. Free *data with sr_free. */
 sr_status sr_file_read(const char *path, size_t max_size, char **data, size_t *size, struct sr_error *error);
 
 /* Unpacks zlib's format into exactly out_size bytes; false: it is damaged, or of another size. */
@@ -117,42 +118,42 @@ uint64_t sr_peak_memory_B(void); // largest resident set of this process so far 
 /* ---- parameters: what a model has, standing once, read by importer, laboratory, docs and tests ---- */
 
 enum sr_param_kind {
-    SR_PARAM_BOOL,             // bool
-    SR_PARAM_INT,              // int32_t
-    SR_PARAM_FLOAT,            // float
-    SR_PARAM_ENUM,             // int32_t: index into choices "a|b|c"; default = index
-    SR_PARAM_STRING,           // const char *
-    SR_PARAM_FILE,             // const char *: resolved against the scene file's folder
-    SR_PARAM_POINT2,           // sr_vec2
-    SR_PARAM_POINT3,           // sr_vec3
-    SR_PARAM_VECTOR3,          // sr_vec3
-    SR_PARAM_NORMAL3,          // sr_vec3
-    SR_PARAM_ALBEDO,           // struct sr_spd, a reflectance or transmittance in 0 … 1 per wavelength
-    SR_PARAM_UNBOUNDED,        // struct sr_spd, any positive quantity (eta, k)
-    SR_PARAM_ILLUMINANT,       // struct sr_spd, an emission
-    SR_PARAM_FLOAT_TEXTURE,    // struct sr_texture
-    SR_PARAM_ALBEDO_TEXTURE,   // struct sr_texture
-    SR_PARAM_UNBOUNDED_TEXTURE,// struct sr_texture
-    SR_PARAM_MATERIALS,        // struct sr_slice of const struct sr_material *
-    SR_PARAM_INTS,             // struct sr_slice of int32_t
-    SR_PARAM_FLOATS,           // struct sr_slice of float
-    SR_PARAM_POINT2S,          // struct sr_slice of sr_vec2
-    SR_PARAM_POINT3S,          // struct sr_slice of sr_vec3 (12 bytes each)
-    SR_PARAM_VECTOR3S,         // struct sr_slice of sr_vec3
-    SR_PARAM_NORMAL3S,         // struct sr_slice of sr_vec3
-    SR_PARAM_RGBS,             // struct sr_slice of struct sr_rgb; valid until the model has been prepared
+    SR_PARAM_BOOL,              // bool
+    SR_PARAM_INT,               // int32_t
+    SR_PARAM_FLOAT,             // float
+    SR_PARAM_ENUM,              // int32_t: index into choices "a|b|c"; default = index
+    SR_PARAM_STRING,            // const char *
+    SR_PARAM_FILE,              // const char *: resolved against the scene file's folder
+    SR_PARAM_POINT2,            // sr_vec2
+    SR_PARAM_POINT3,            // sr_vec3
+    SR_PARAM_VECTOR3,           // sr_vec3
+    SR_PARAM_NORMAL3,           // sr_vec3
+    SR_PARAM_ALBEDO,            // struct sr_spd, a reflectance or transmittance in 0 … 1 per wavelength
+    SR_PARAM_UNBOUNDED,         // struct sr_spd, any positive quantity (eta, k)
+    SR_PARAM_ILLUMINANT,        // struct sr_spd, an emission
+    SR_PARAM_FLOAT_TEXTURE,     // struct sr_texture
+    SR_PARAM_ALBEDO_TEXTURE,    // struct sr_texture
+    SR_PARAM_UNBOUNDED_TEXTURE, // struct sr_texture
+    SR_PARAM_MATERIALS,         // struct sr_slice of const struct sr_material *
+    SR_PARAM_INTS,              // struct sr_slice of int32_t
+    SR_PARAM_FLOATS,            // struct sr_slice of float
+    SR_PARAM_POINT2S,           // struct sr_slice of sr_vec2
+    SR_PARAM_POINT3S,           // struct sr_slice of sr_vec3 (12 bytes each)
+    SR_PARAM_VECTOR3S,          // struct sr_slice of sr_vec3
+    SR_PARAM_NORMAL3S,          // struct sr_slice of sr_vec3
+    SR_PARAM_RGBS,              // struct sr_slice of struct sr_rgb; valid until the model has been prepared
 };
 
-/* One parameter. Where the file gives none, the value is `initial`; NaN means "none": a texture then has a NULL model, a
- * spectrum kind SR_SPD_NONE, a float stays NaN, a slice is empty. Tables end with a row whose name is NULL. */
+/* One parameter. Where the file gives none, the value is `initial`; NaN means "none": a texture then has a NULL model,
+ * a spectrum kind SR_SPD_NONE, a float stays NaN, a slice is empty. Tables end with a row whose name is NULL. */
 struct sr_param {
     enum sr_param_kind kind;
-    const char *name;    // the word of the scene file
-    const char *unit;    // "1", "m", "deg", "nm", "sr^-1", …
-    double min, max;     // a value outside is an error of the scene
+    const char *name; // the word of the scene file
+    const char *unit; // "1", "m", "deg", "nm", "sr^-1", …
+    double min, max;  // a value outside is an error of the scene
     double initial;
-    size_t offset;       // of the member in the model's struct
-    const char *text;    // one line for the manual; for ENUM: the choices "a|b|c"; for STRING: the default
+    size_t offset;    // of the member in the model's struct
+    const char *text; // one line for the manual; for ENUM: the choices "a|b|c"; for STRING: the default
 };
 
 #endif

@@ -22,7 +22,8 @@ static char *grow(char *old, size_t used, size_t size)
 }
 
 /* All bytes of a descriptor, of known size or not. */
-static sr_status read_all(int fd, const char *path, size_t expected, size_t max_size, char **data, size_t *size, struct sr_error *error)
+static sr_status read_all(int fd, const char *path, size_t expected, size_t max_size, char **data, size_t *size,
+                          struct sr_error *error)
 {
     size_t capacity = expected ? expected : 1 << 16, n = 0;
     char *bytes = sr_alloc(capacity + 1);
@@ -39,7 +40,8 @@ static sr_status read_all(int fd, const char *path, size_t expected, size_t max_
             break;
         if (n > max_size) {
             sr_free(bytes);
-            return sr_fail(error, SR_ERROR_INPUT, "%s: is larger than %zu bytes, the limit for this kind of file", path, max_size);
+            return sr_fail(error, SR_ERROR_INPUT, "%s: is larger than %zu bytes, the limit for this kind of file", path,
+                           max_size);
         }
         if (n == capacity) {
             char extra; // most files are as long as they say: look before growing
@@ -99,8 +101,10 @@ static sr_status gunzip(const char *path, size_t max_size, char **data, size_t *
         return sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory to unpack it", path);
     if (n > max_size || status != Z_STREAM_END) {
         sr_free(out);
-        return n > max_size ? sr_fail(error, SR_ERROR_INPUT, "%s: unpacks to more than %zu bytes, the limit for this kind of file", path, max_size)
-                            : sr_fail(error, SR_ERROR_INPUT, "%s: is damaged or cut short: it does not unpack as gzip", path);
+        return n > max_size
+                   ? sr_fail(error, SR_ERROR_INPUT,
+                             "%s: unpacks to more than %zu bytes, the limit for this kind of file", path, max_size)
+                   : sr_fail(error, SR_ERROR_INPUT, "%s: is damaged or cut short: it does not unpack as gzip", path);
     }
     out[n] = 0;
     sr_free(*data);
@@ -124,7 +128,8 @@ sr_status sr_file_read(const char *path, size_t max_size, char **data, size_t *s
     else if (S_ISDIR(st.st_mode))
         status = sr_fail(error, SR_ERROR_INPUT, "%s: is a folder, a file was expected", path);
     else if (S_ISREG(st.st_mode) && (uint64_t)st.st_size > max_size)
-        status = sr_fail(error, SR_ERROR_INPUT, "%s: is larger than %zu bytes, the limit for this kind of file", path, max_size);
+        status = sr_fail(error, SR_ERROR_INPUT, "%s: is larger than %zu bytes, the limit for this kind of file", path,
+                         max_size);
     else
         status = read_all(fd, path, S_ISREG(st.st_mode) ? (size_t)st.st_size : 0, max_size, data, size, error);
     if (!is_stdin)
@@ -152,7 +157,8 @@ sr_status sr_file_write(const char *path, const void *data, size_t size, struct 
     }
     // pipes and devices cannot be renamed onto
     bool is_special = stat(path, &st) == 0 && !S_ISREG(st.st_mode);
-    int fd = open(is_special ? path : beside, is_special ? O_WRONLY | O_CLOEXEC : O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    int fd = open(is_special ? path : beside,
+                  is_special ? O_WRONLY | O_CLOEXEC : O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     bool ok = fd >= 0;
     for (size_t n = 0; ok && n < size;) {
         ssize_t put = write(fd, (const char *)data + n, size - n);

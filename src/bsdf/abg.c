@@ -3,13 +3,12 @@
  *
  *     f = A / (B + r^g)       [1/sr],    r = |(wo + wi)_xy|, zero toward the mirror direction      [1]
  *
- * and a mirror's share, specular, beside it. Reciprocal, and invariant under shifts in the plane of direction cosines. Flat below
- * r = B^(1/g), g the slope beyond; g = 0 is Lambert's A / (B + 1). Most is scattered at normal incidence, the total
- * integrated scatter TIS = 2 pi A INTEGRAL_0^1 r / (B + r^g) dr (g = 2: pi A ln(1 + 1 / B)); where that and specular are more
- * than 1, A is lowered until they are not. Drawn by the Harvey law with l = B^(1/g), which is nowhere off by more than
- * 2^|1 - g/2| (harvey.h).
- * J. E. Harvey, Light-scattering characteristics of optical surfaces, 1976; R. N. Pfisterer, Approximated scatter models for
- * stray light analysis, 2011. */
+ * and a mirror's share, specular, beside it. Reciprocal, and invariant under shifts in the plane of direction cosines.
+ * Flat below r = B^(1/g), g the slope beyond; g = 0 is Lambert's A / (B + 1). Most is scattered at normal incidence,
+ * the total integrated scatter TIS = 2 pi A INTEGRAL_0^1 r / (B + r^g) dr (g = 2: pi A ln(1 + 1 / B)); where that and
+ * specular are more than 1, A is lowered until they are not. Drawn by the Harvey law with l = B^(1/g), which is nowhere
+ * off by more than 2^|1 - g/2| (harvey.h). J. E. Harvey, Light-scattering characteristics of optical surfaces, 1976; R.
+ * N. Pfisterer, Approximated scatter models for stray light analysis, 2011. */
 #include "bsdf/harvey.h"
 
 struct abg {

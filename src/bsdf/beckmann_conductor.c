@@ -8,8 +8,8 @@
  *
  * alpha is sqrt(2) times the root mean square of the slopes along its axis; eta and k are relative to the outside.
  * Lambda is Smith's, exactly, not its usual rational fit. Facets are drawn as they are seen: pdf = D / (4 |zo| (1 +
- * Lambda(wo))), the weight of a sample is F G2 / G1 <= F. P. Beckmann & A. Spizzichino 1963; B. Smith 1967; E. Heitz 2014;
- * E. Heitz & E. d'Eon 2014. A mirror (both alpha below 1e-3) is a delta function. What scatters twice is lost. */
+ * Lambda(wo))), the weight of a sample is F G2 / G1 <= F. P. Beckmann & A. Spizzichino 1963; B. Smith 1967; E. Heitz
+ * 2014; E. Heitz & E. d'Eon 2014. A mirror (both alpha below 1e-3) is a delta function. What scatters twice is lost. */
 #include "bsdf/facets.h"
 
 struct beckmann_conductor {

@@ -6,10 +6,11 @@
  *     D = exp(-(m.x^2 / ax^2 + m.y^2 / ay^2) / m.z^2) / (pi ax ay m.z^4)                                 [1/sr]
  *
  * with eta the index on wi's side over that on wo's; radiance is compressed with its solid angle: f / eta^2. Lambda is
- * Smith's, exactly. masking tells how the two sides' Lambda mask refracted light: beta is exact for a surface whose heights
- * do not know of its slopes, product is Walter's, sum is what some renderers use (see facets_interface.h).
- * Walter et al. 2007; Heitz & d'Eon 2014 (sampling). Both alpha below 1e-3, or indices within 1e-3 of each other: a delta
- * function. What scatters twice is lost. A path bears one index: for dispersion give the index of its first wavelength. */
+ * Smith's, exactly. masking tells how the two sides' Lambda mask refracted light: beta is exact for a surface whose
+ * heights do not know of its slopes, product is Walter's, sum is what some renderers use (see facets_interface.h).
+ * Walter et al. 2007; Heitz & d'Eon 2014 (sampling). Both alpha below 1e-3, or indices within 1e-3 of each other: a
+ * delta function. What scatters twice is lost. A path bears one index: for dispersion give the index of its first
+ * wavelength. */
 #include "bsdf/facets_interface.h"
 
 struct beckmann_dielectric {

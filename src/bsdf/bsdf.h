@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* How matter scatters light at a point: one file a model, nothing but numbers in and out.
  *
- * Directions are in the local frame: normal +z, tangent +x; wo toward the viewer, wi toward the light, both pointing away
- * from the surface. f is in sr^-1, without the cosine. Where light passes into another medium, f is the radiance form
- * (with the factor eta^2) when mode is SR_RADIANCE, and the form for light paths when SR_IMPORTANCE. */
+ * Directions are in the local frame: normal +z, tangent +x; wo toward the viewer, wi toward the light, both pointing
+ * away from the surface. f is in sr^-1, without the cosine. Where light passes into another medium, f is the radiance
+ * form (with the factor eta^2) when mode is SR_RADIANCE, and the form for light paths when SR_IMPORTANCE. */
 #ifndef SR_BSDF_BSDF_H
 #define SR_BSDF_BSDF_H
 
@@ -30,7 +30,8 @@ struct sr_bsdf_sample {
     bool pdf_is_proportional; // f and pdf share an unknown factor (random walks): use pdf() for weighing
 };
 
-#define SR_BSDF_SIZE (48 * sizeof(float) + 10 * sizeof(sr_spectrum)) // [B] of the largest model's data: 512 for 8 wavelengths
+#define SR_BSDF_SIZE                                                                                                   \
+    (48 * sizeof(float) + 10 * sizeof(sr_spectrum)) // [B] of the largest model's data: 512 for 8 wavelengths
 
 /* What a model may want to know of the path, besides its parameters. */
 struct sr_bsdf_at {
@@ -38,9 +39,9 @@ struct sr_bsdf_at {
     uint32_t seed;      // of this vertex: f of a random walk
 };
 
-/* A model is one file. Its table is all that scene files, laboratory, documents and tests know of its parameters; the kinds
- * are FLOAT (float), INT and ENUM (int32_t), BOOL (bool), FILE (const char *), ALBEDO and UNBOUNDED (sr_spectrum, already at
- * the path's wavelengths). Every parameter has a finite default inside its range. */
+/* A model is one file. Its table is all that scene files, laboratory, documents and tests know of its parameters; the
+ * kinds are FLOAT (float), INT and ENUM (int32_t), BOOL (bool), FILE (const char *), ALBEDO and UNBOUNDED (sr_spectrum,
+ * already at the path's wavelengths). Every parameter has a finite default inside its range. */
 struct sr_bsdf_model {
     const char *name;   // hapke: the word of scene files and of the laboratory
     const char *title;  // "Hapke 1981, with roughness"
@@ -61,12 +62,13 @@ struct sr_bsdf_model {
                    struct sr_bsdf_sample *s);
     /* f and pdf at once, where sharing work pays; NULL: the two are called. Must equal them bit for bit. */
     sr_spectrum (*f_pdf)(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *pdf);
-    /* directional albedo E(wo) per wavelength, in the form for importance, where a closed form is known; NULL, or NaN for
-     * these parameters: nobody knows one. */
+    /* directional albedo E(wo) per wavelength, in the form for importance, where a closed form is known; NULL, or NaN
+     * for these parameters: nobody knows one. */
     sr_spectrum (*albedo)(const void *self, sr_vec3 wo);
     bool is_random; // f is itself an unbiased estimate: it depends on a seed in the data (for some parameters; pdf is a
                     // plain function, but where sample says pdf_is_proportional it serves for weighing only)
-    /* What a model breaks by its nature, as documented amounts that a certificate measures against; 0: it keeps the law. */
+    /* What a model breaks by its nature, as documented amounts that a certificate measures against; 0: it keeps the
+     * law. */
     float asymmetry;      // [1] most |f(a, b) - f(b, a)| / the larger of them, over its parameters
     float largest_albedo; // [1] most light that it returns for 1 that arrives, where above 1
 };
@@ -132,8 +134,9 @@ struct sr_bsdf {
     _Alignas(64) unsigned char data[SR_BSDF_SIZE];
 };
 
-/* Before a call that returns a spectrum compilers leave the upper halves of the vector registers as they are, because of the
- * value that will come back in them; the mathematical library's plain functions are several times slower then. */
+/* Before a call that returns a spectrum compilers leave the upper halves of the vector registers as they are, because
+ * of the value that will come back in them; the mathematical library's plain functions are several times slower then.
+ */
 static inline void sr_bsdf_clean_vectors(void)
 {
 #ifdef __AVX__
@@ -185,7 +188,8 @@ static inline float sr_bsdf_pdf(const struct sr_bsdf *b, sr_vec3 wo, sr_vec3 wi,
 {
     return b->model->pdf(b->data, wo, wi, mode);
 }
-static inline sr_spectrum sr_bsdf_f_pdf(const struct sr_bsdf *b, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *pdf)
+static inline sr_spectrum sr_bsdf_f_pdf(const struct sr_bsdf *b, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode,
+                                        float *pdf)
 {
     if (sr_bsdf_is_diffuse(b))
         return sr_diffuse_f_pdf((const void *)b->data, wo, wi, pdf);
@@ -198,14 +202,16 @@ static inline sr_spectrum sr_bsdf_f_pdf(const struct sr_bsdf *b, sr_vec3 wo, sr_
 static inline bool sr_bsdf_sample(const struct sr_bsdf *b, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode,
                                   struct sr_bsdf_sample *s)
 {
-    return sr_bsdf_is_diffuse(b) ? sr_diffuse_sample((const void *)b->data, wo, u, s) : b->model->sample(b->data, wo, u_lobe, u, mode, s);
+    return sr_bsdf_is_diffuse(b) ? sr_diffuse_sample((const void *)b->data, wo, u, s)
+                                 : b->model->sample(b->data, wo, u_lobe, u, mode, s);
 }
 
-/* Fresnel reflectance, unpolarised. eta = index behind the surface / index on wo's side; cos_theta signed: negative means
- * from behind. */
+/* Fresnel reflectance, unpolarised. eta = index behind the surface / index on wo's side; cos_theta signed: negative
+ * means from behind. */
 float sr_fresnel_dielectric(float cos_theta_i, float eta);
 sr_spectrum sr_fresnel_conductor(float cos_theta_i, sr_spectrum eta, sr_spectrum k);
-/* Reflectance of a dielectric for Lambertian incidence from the thin side, n > 1 (Walsh 1926); from inside: 1 - (1-F)/n^2 */
+/* Reflectance of a dielectric for Lambertian incidence from the thin side, n > 1 (Walsh 1926); from inside: 1 -
+ * (1-F)/n^2 */
 double sr_fresnel_diffuse(double n);
 /* Snell's law about the normal n; false at total reflection. *eta_path is the relative index along the way of wt. */
 bool sr_refract(sr_vec3 wi, sr_vec3 n, float eta, float *eta_path, sr_vec3 *wt);
@@ -227,8 +233,8 @@ float sr_ggx_visible_pdf(struct sr_ggx g, sr_vec3 w, sr_vec3 wm); // [1/sr] of v
 sr_vec3 sr_ggx_sample_visible(struct sr_ggx g, sr_vec3 w, sr_vec2 u);
 float sr_ggx_roughness_to_alpha(float roughness); // pbrt's: sqrt(roughness)
 
-/* Plain data of the models that materials of their own fill in; all others keep theirs in their file, filled in by the table.
- * Each spectrum is at the path's wavelengths. */
+/* Plain data of the models that materials of their own fill in; all others keep theirs in their file, filled in by the
+ * table. Each spectrum is at the path's wavelengths. */
 struct sr_bsdf_diffuse_transmission {
     sr_spectrum reflectance, transmittance; // [1]
 };
@@ -241,12 +247,12 @@ struct sr_bsdf_dielectric {
     struct sr_ggx ggx;
 };
 struct sr_bsdf_thin_dielectric {
-    float eta; // [1]
-    bool
-        sums_as_pbrt; // the bounces in the pane are summed for the mean of the polarisations, as pbrt-v4 does, not for each:
-                      // T is too small by up to 0.02. For comparing images only.
+    float eta;         // [1]
+    bool sums_as_pbrt; // the bounces in the pane are summed for the mean of the polarisations, as pbrt-v4 does, not for
+                       // each: T is too small by up to 0.02. For comparing images only.
 };
-/* A dielectric coat over a base, with an optional medium between (position-free random walk, Guo, Hasan & Zhao 2018). */
+/* A dielectric coat over a base, with an optional medium between (position-free random walk, Guo, Hasan & Zhao 2018).
+ */
 struct sr_bsdf_coated {
     sr_spectrum base_reflectance; // [1]  coateddiffuse
     sr_spectrum base_eta, base_k; // [1]  coatedconductor, relative to the coat
@@ -256,10 +262,9 @@ struct sr_bsdf_coated {
     float thickness; // [1] optical: in units of the medium's mean free path
     float g;         // [1] Henyey-Greenstein
     int32_t max_depth, sample_count;
-    uint32_t seed; // of this vertex: f is a random walk
-    bool
-        weighs_as_pbrt; // reproduces a bias of pbrt-v4: light through a rough coat is 2 to 12 % too bright (of f, not of
-                        // sample). For comparing images only.
+    uint32_t seed;       // of this vertex: f is a random walk
+    bool weighs_as_pbrt; // reproduces a bias of pbrt-v4: light through a rough coat is 2 to 12 % too bright (of f, not
+                         // of sample). For comparing images only.
 };
 
 /* A fibre along x; what stands below `derived` is made by the model's ready. */
@@ -273,14 +278,14 @@ struct sr_bsdf_hair {
     float alpha;                  // [deg]
     int32_t colour_from;
     // derived
-    sr_spectrum sigma;                  // [1/radius]
+    sr_spectrum sigma;                 // [1/radius]
     float v[SR_HAIR_LOBES], s, s_norm; // s_norm: share of the logistic that lies within one turn
     float sin_tilt[3], cos_tilt[3];
     float gamma_o; // [rad]
 };
 
-/* How light that has wandered below a surface leaves it: f = T(theta_i) / (pi (1 - F_diffuse)), whatever wo above. Belongs to
- * the material "subsurface" and stands in no list. */
+/* How light that has wandered below a surface leaves it: f = T(theta_i) / (pi (1 - F_diffuse)), whatever wo above.
+ * Belongs to the material "subsurface" and stands in no list. */
 struct sr_bsdf_exit {
     float eta;   // [1] inside over outside
     float scale; // [1/sr] 1 / (pi INTEGRAL T cos / pi dw)

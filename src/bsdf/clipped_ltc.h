@@ -2,22 +2,22 @@
 /* Private to this room: directions for rough matte surfaces, from a cosine lobe that is clipped and sheared.
  *
  * With probability p even over the hemisphere, else w = M h / |M h| where h has a cosine lobe, clipped to those that M
- * keeps above the surface; M and p are fits in the roughness r (0: plain cosine) and in mu = cos_theta_o, in the frame whose
- * x axis is the viewer's azimuth:
+ * keeps above the surface; M and p are fits in the roughness r (0: plain cosine) and in mu = cos_theta_o, in the frame
+ * whose x axis is the viewer's azimuth:
  *
  *     pdf = p / (2 pi) + (1 - p) (det M / |adj(M) w|^2)^2 (adj(M) w).z / (pi q)   [1/sr]
  *
- * q is the part of the lobe that is left. J. Portsmouth, P. Kutz & S. Hill, EON: a practical energy-preserving rough diffuse
- * BRDF, 2024. */
+ * q is the part of the lobe that is left. J. Portsmouth, P. Kutz & S. Hill, EON: a practical energy-preserving rough
+ * diffuse BRDF, 2024. */
 #ifndef SR_BSDF_CLIPPED_LTC_H
 #define SR_BSDF_CLIPPED_LTC_H
 
 #include "bsdf/hemisphere.h"
 
 struct clipped_ltc {
-    float a, b, c, d;  // M = [[a, 0, b], [0, c, 0], [d, 0, 1]]
-    float even;        // p
-    float left;        // q
+    float a, b, c, d;   // M = [[a, 0, b], [0, c, 0], [d, 0, 1]]
+    float even;         // p
+    float left;         // q
     float cos_x, sin_x; // of the viewer's azimuth
 };
 

@@ -7,9 +7,9 @@
  *     A(w) = share that arrives at the base,    Fi = share of the base's light that the coat sends back to it
  *     K = (max_depth + 1) / 2   meetings with the base, as an event is one crossing
  *
- * Smooth coat:  A = (1 - F(w)) exp(-d / cos_t)   and   Fi = 2 INTEGRAL_0^1 F_inside(c) exp(-2 d / c) c dc   are functions,
- * so f is exact; for d = 0, Fi = 1 - (1 - F_diffuse) / eta^2. Rough coat: each factor is drawn once, independently, so
- * the product is unbiased without the cost of joining the walk at each bounce. Otherwise: the walk.
+ * Smooth coat:  A = (1 - F(w)) exp(-d / cos_t)   and   Fi = 2 INTEGRAL_0^1 F_inside(c) exp(-2 d / c) c dc   are
+ * functions, so f is exact; for d = 0, Fi = 1 - (1 - F_diffuse) / eta^2. Rough coat: each factor is drawn once,
+ * independently, so the product is unbiased without the cost of joining the walk at each bounce. Otherwise: the walk.
  *
  * J. L. Saunderson 1942; M. Elias & L. Simonot 2001; Guo, Hasan & Zhao 2018. */
 #include "bsdf/layered.h"
@@ -135,7 +135,8 @@ static struct shares shares_of(const struct sr_bsdf_coated *c, float cos_o)
     return s;
 }
 
-/* For weighing only: the coat's own lobe, and the base's as if the coat were smooth. One machine code for all who ask. */
+/* For weighing only: the coat's own lobe, and the base's as if the coat were smooth. One machine code for all who ask.
+ */
 __attribute__((noinline)) static float density(const struct layers *l, sr_vec3 wo, sr_vec3 wi)
 {
     float cosine = wi.z * SR_INV_PI, top;

@@ -5,12 +5,12 @@
  *     D = exp(-tan^2 / alpha^2) / (pi alpha^2 m.z^4)                               [1/sr]
  *     G = min(1, 2 m.z |zo| / c, 2 m.z |zi| / c)                                   [1]
  *
- * F is Fresnel's, exact, of the index eta + i k relative to the outside; k = 0 is a plastic. The paper prints 1 / pi in the
- * place of 1 / 4: constant = inv_pi gives that, with the D above, for comparing with pictures that were made so. It is 4 / pi
- * too bright and has no derivation; 1 / 4 is |dm / dwi| times |wo.m| and keeps E <= 1. Energy is kept where specular +
- * reflectance <= 1. The paper's sum over several alpha is a sum of such materials.
- * Facets are drawn as the grooves show them (Heitz & d'Eon 2014): the weight of a sample is F G2 / G1 <= F.
- * R. L. Cook & K. E. Torrance, A reflectance model for computer graphics, 1982. */
+ * F is Fresnel's, exact, of the index eta + i k relative to the outside; k = 0 is a plastic. The paper prints 1 / pi in
+ * the place of 1 / 4: constant = inv_pi gives that, with the D above, for comparing with pictures that were made so. It
+ * is 4 / pi too bright and has no derivation; 1 / 4 is |dm / dwi| times |wo.m| and keeps E <= 1. Energy is kept where
+ * specular + reflectance <= 1. The paper's sum over several alpha is a sum of such materials. Facets are drawn as the
+ * grooves show them (Heitz & d'Eon 2014): the weight of a sample is F G2 / G1 <= F. R. L. Cook & K. E. Torrance, A
+ * reflectance model for computer graphics, 1982. */
 #include "bsdf/facets.h"
 
 struct cook_torrance {

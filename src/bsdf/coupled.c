@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* A polished matte surface: a mirror's reflection by Fresnel's law, and below it matter that gets, and lets out, exactly the
- * light that the mirror leaves it.
+/* A polished matte surface: a mirror's reflection by Fresnel's law, and below it matter that gets, and lets out,
+ * exactly the light that the mirror leaves it.
  *
  *     mirror: R(c) = specular + (1 - specular)(1 - c)^5   [1], a delta function
  *     f   = 21 / (20 pi (1 - specular)) reflectance (1 - R(cos_theta_o)) (1 - R(cos_theta_i))   [1/sr]
  *     E   = R(cos_theta_o) + reflectance (1 - R(cos_theta_o)): 1 where reflectance = 1
  *
- * because 2 INTEGRAL c (1 - (1 - c)^5) dc = 20/21. P. Shirley, B. Smits, H. Hu & E. Lafortune, A practitioner's assessment of
- * light reflection models, 1997. Limits: Schlick's Fresnel; what matter sends back to itself at the boundary is left out. */
+ * because 2 INTEGRAL c (1 - (1 - c)^5) dc = 20/21. P. Shirley, B. Smits, H. Hu & E. Lafortune, A practitioner's
+ * assessment of light reflection models, 1997. Limits: Schlick's Fresnel; what matter sends back to itself at the
+ * boundary is left out. */
 #include "bsdf/hemisphere.h"
 
 struct coupled {
@@ -90,7 +91,8 @@ static sr_spectrum albedo(const void *self, sr_vec3 wo)
 const struct sr_bsdf_model sr_bsdf_coupled = {
     .name = "coupled",
     .title = "Coupled mirror and matte (Shirley 1997)",
-    .source = "P. Shirley, B. Smits, H. Hu & E. Lafortune, A practitioner's assessment of light reflection models, 1997",
+    .source =
+        "P. Shirley, B. Smits, H. Hu & E. Lafortune, A practitioner's assessment of light reflection models, 1997",
     .limits = "Schlick's Fresnel; no light goes to and fro between matter and boundary.",
     .params = params,
     .size = sizeof(struct coupled),

@@ -12,12 +12,12 @@
  * with ci, co the cosines of wi and wo, cd = wo.m. B. Burley, Physically Based Shading at Disney, 2012, as in Disney's
  * BRDF Explorer (which masks by alpha, not by the paper's widened roughness).
  *
- * Limits: reciprocal, but not bound by energy: lobes are added without taking from each other, the diffuse one exceeds 1
- * by itself at grazing, and tints multiply (up to 10 times for saturated colours). */
+ * Limits: reciprocal, but not bound by energy: lobes are added without taking from each other, the diffuse one exceeds
+ * 1 by itself at grazing, and tints multiply (up to 10 times for saturated colours). */
 #include "bsdf/burley.h"
 
 struct disney {
-    sr_spectrum reflectance; // [1]
+    sr_spectrum reflectance;             // [1]
     sr_spectrum specular0, sheen_colour; // [1] derived
     float metallic, subsurface, specular, roughness, specular_tint, anisotropic, sheen, sheen_tint, clearcoat,
         clearcoat_gloss; // [1]
@@ -28,7 +28,8 @@ static const struct sr_param params[] = {
     {SR_PARAM_ALBEDO, "reflectance", "1", 0, 1, 0.5, offsetof(struct disney, reflectance), "base colour"},
     {SR_PARAM_FLOAT, "metallic", "1", 0, 1, 0, offsetof(struct disney, metallic), "0: plastic, 1: metal"},
     {SR_PARAM_FLOAT, "subsurface", "1", 0, 1, 0, offsetof(struct disney, subsurface), "flattens the diffuse lobe"},
-    {SR_PARAM_FLOAT, "specular", "1", 0, 1, 0.5, offsetof(struct disney, specular), "reflectance at normal incidence / 0.08"},
+    {SR_PARAM_FLOAT, "specular", "1", 0, 1, 0.5, offsetof(struct disney, specular),
+     "reflectance at normal incidence / 0.08"},
     {SR_PARAM_FLOAT, "roughness", "1", 0, 1, 0.5, offsetof(struct disney, roughness), "square root of the slope width"},
     {SR_PARAM_FLOAT, "specular_tint", "1", 0, 1, 0, offsetof(struct disney, specular_tint), "towards the base colour"},
     {SR_PARAM_FLOAT, "anisotropic", "1", 0, 1, 0, offsetof(struct disney, anisotropic), "stretches along the tangent"},
@@ -84,8 +85,9 @@ static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_trans
     float F90 = 0.5f + 2 * cd * cd * m->roughness, flat90 = cd * cd * m->roughness;
     float Fd = (1 + (F90 - 1) * FL) * (1 + (F90 - 1) * FV), Fss = (1 + (flat90 - 1) * FL) * (1 + (flat90 - 1) * FV);
     float ss = 1.25f * (Fss * (1 / (ci + co) - 0.5f) + 0.5f);
-    sr_spectrum value = ((sr_lerp(m->subsurface, Fd, ss) * SR_INV_PI) * m->reflectance +
-                         (m->sheen * FH) * m->sheen_colour) * (1 - m->metallic);
+    sr_spectrum value =
+        ((sr_lerp(m->subsurface, Fd, ss) * SR_INV_PI) * m->reflectance + (m->sheen * FH) * m->sheen_colour) *
+        (1 - m->metallic);
     struct choice choose = choices(m, co);
     *p = choose.diffuse * ci * SR_INV_PI;
 

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* The surface of a translucent body, seen by light that comes out of it after many scatterings: diffuse but for Fresnel.
+/* The surface of a translucent body, seen by light that comes out of it after many scatterings: diffuse but for
+ * Fresnel.
  *
  *     f(wo, wi) = T(theta_i) / (pi t),   t = 2 INTEGRAL_0^1 T(mu) mu dmu = 1 - F_diffuse(eta)      [1/sr]
  *
  * so that light arriving from all sides enters with the share t, and the BSSRDF's spatial part keeps its normalisation
- * (Christensen & Burley 2015; Pharr, Jakob & Humphreys 2016, 11.4.2). The radiance form has the factor eta^2, which cancels
- * the 1 / eta^2 of the refraction at the other end. Limits: T of a smooth boundary, also where the material is rough. */
+ * (Christensen & Burley 2015; Pharr, Jakob & Humphreys 2016, 11.4.2). The radiance form has the factor eta^2, which
+ * cancels the 1 / eta^2 of the refraction at the other end. Limits: T of a smooth boundary, also where the material is
+ * rough. */
 #include "bsdf/bsdf.h"
 
 void sr_bsdf_exit_make(struct sr_bsdf *b, float eta)
@@ -37,12 +39,14 @@ static float pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mod
     return sr_same_hemisphere(wo, wi) ? fabsf(wi.z) * SR_INV_PI : 0;
 }
 
-static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode, struct sr_bsdf_sample *s)
+static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode,
+                   struct sr_bsdf_sample *s)
 {
     (void)u_lobe;
     sr_vec3 wi = sr_warp_cosine_hemisphere(u);
     wi.z = copysignf(wi.z, wo.z);
-    *s = (struct sr_bsdf_sample){.wi = wi, .f = f(self, wo, wi, mode), .pdf = fabsf(wi.z) * SR_INV_PI, .eta = 1, .lobe = lobes(self)};
+    *s = (struct sr_bsdf_sample){
+        .wi = wi, .f = f(self, wo, wi, mode), .pdf = fabsf(wi.z) * SR_INV_PI, .eta = 1, .lobe = lobes(self)};
     return s->pdf > 0;
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Private to this room: rough surfaces made of small mirrors, for a choice of their slopes and of how they hide each other.
+/* Private to this room: rough surfaces made of small mirrors, for a choice of their slopes and of how they hide each
+ * other.
  *
  *     f = F(|wo.m|) D(m) G(wo, wi) / (4 |zo| |zi|)    [1/sr],    INTEGRAL D(m) m.z dm = 1
  *
@@ -11,9 +12,9 @@
  *     product            G / (|zo| |zi|) = 1 / (s(wo) s(wi))
  *     V-cavities         G = min(1, 2 m.z |zo| / |wo.m|, 2 m.z |zi| / |wo.m|)
  *
- * Phong's slopes, D = (1 / (pi ax ay)) m.z^n with n + 2 = 2 / alpha^2 along each azimuth, have no area in closed form; they
- * borrow Beckmann's (Walter et al. 2007), and are drawn by D m.z. All others are drawn as w sees them.
- * Cook & Torrance 1982; Walter et al. 2007; Heitz 2014; Heitz & d'Eon 2014 (visible normals). */
+ * Phong's slopes, D = (1 / (pi ax ay)) m.z^n with n + 2 = 2 / alpha^2 along each azimuth, have no area in closed form;
+ * they borrow Beckmann's (Walter et al. 2007), and are drawn by D m.z. All others are drawn as w sees them. Cook &
+ * Torrance 1982; Walter et al. 2007; Heitz 2014; Heitz & d'Eon 2014 (visible normals). */
 #ifndef SR_BSDF_FACETS_H
 #define SR_BSDF_FACETS_H
 
@@ -54,8 +55,8 @@ static inline float facets_D(const struct facets *a, sr_vec3 m)
     return a->slopes == SLOPES_BECKMANN ? beckmann_D(a->alpha_x, a->alpha_y, m) : phong_D(a->alpha_x, a->alpha_y, m);
 }
 
-/* s of a surface with alpha = 1 seen along a vector of height c >= 0 and width r >= 0, up to the slope x: all is seen at
- * x = c / r. As a function of x it is the distribution of the slopes that are seen (Heitz & d'Eon 2014). */
+/* s of a surface with alpha = 1 seen along a vector of height c >= 0 and width r >= 0, up to the slope x: all is seen
+ * at x = c / r. As a function of x it is the distribution of the slopes that are seen (Heitz & d'Eon 2014). */
 static inline float beckmann_area(float c, float r, float x)
 {
     return 0.5f * c * erfcf(-x) + r * expf(-x * x) * 0.28209479f; // 1 / (2 sqrt(pi))
@@ -166,7 +167,8 @@ static inline float facets_masking(const struct facets *a, sr_vec3 wo, sr_vec3 w
     return 1 / (area_o * zi + (area_i - zi) * zo);
 }
 
-/* D G / (4 |zo| |zi|) [1/sr], the density of facets_sample_reflection, and the cosine at the facet. 0: nothing reflects. */
+/* D G / (4 |zo| |zi|) [1/sr], the density of facets_sample_reflection, and the cosine at the facet. 0: nothing
+ * reflects. */
 static inline float facets_reflection(const struct facets *a, sr_vec3 wo, sr_vec3 wi, float *pdf, float *cos_m)
 {
     *pdf = 0;

@@ -4,15 +4,15 @@
  *     reflection:   f = F D G / (4 |zo| |zi|)                                                           [1/sr]
  *     transmission: f = (1 - F) D G' |wi.m| |wo.m| / (|zo| |zi| (wi.m + wo.m / eta)^2)                   [1/sr]
  *
- * in the form for importance; eta = index on wi's side over that on wo's. Light that passes is masked above and below, where
- * heights work against each other: with a = Lambda(wo) and b = Lambda(wi)
+ * in the form for importance; eta = index on wi's side over that on wo's. Light that passes is masked above and below,
+ * where heights work against each other: with a = Lambda(wo) and b = Lambda(wi)
  *
  *     beta     G = 1 / (1 + a + b),    G' = B(1 + a, 1 + b) = Gamma(1 + a) Gamma(1 + b) / Gamma(2 + a + b)
  *     product  G = G' = 1 / ((1 + a) (1 + b))
  *     sum      G = G' = 1 / (1 + a + b)
  *
- * Walter et al. 2007 (product); Heitz 2014, Dupuy et al. 2016 (beta: exact for Smith's surface). sum has no derivation for
- * opposite sides, but is what some renderers use. */
+ * Walter et al. 2007 (product); Heitz 2014, Dupuy et al. 2016 (beta: exact for Smith's surface). sum has no derivation
+ * for opposite sides, but is what some renderers use. */
 #ifndef SR_BSDF_FACETS_INTERFACE_H
 #define SR_BSDF_FACETS_INTERFACE_H
 

@@ -12,8 +12,8 @@
  * which equals the product of characteristic matrices and, unlike it, never overflows: |e_j| <= 1. Time factor
  * exp(-i omega t), n + i k, so that Im w_j >= 0. Airy 1833; Abeles 1950; Parratt 1954; Born & Wolf, 7th ed., 1.6.
  *
- * Each wavelength for itself and fully coherent: fringes finer than a film can resolve (2 n d cos > lambda^2 / bandwidth)
- * are not averaged but sampled. Substrates are half spaces. */
+ * Each wavelength for itself and fully coherent: fringes finer than a film can resolve (2 n d cos > lambda^2 /
+ * bandwidth) are not averaged but sampled. Substrates are half spaces. */
 #ifndef SR_BSDF_FILM_H
 #define SR_BSDF_FILM_H
 
@@ -70,7 +70,7 @@ struct film_power { // [1] shares of power for both polarisations
     sr_spectrum Rs, Rp, Ts, Tp;
 };
 
-struct film_wave { // a film as light at one angle meets it
+struct film_wave {     // a film as light at one angle meets it
     struct wave s, p;  // a_j above
     struct wave phase; // e_j
 };
@@ -109,8 +109,9 @@ static inline void add_boundary(struct wave a, struct wave b, struct wave e, str
     *t = wave_div(wave_mul(tij, wave_mul(e, *t)), echo);
 }
 
-/* Light from above (the outside, index 1), or from below: from the substrate, which must then be clear. c = |cos| there,
- * c_out = |cos| beyond a clear substrate or outside: near total reflection it says more than c does; 0: total, or a metal. */
+/* Light from above (the outside, index 1), or from below: from the substrate, which must then be clear. c = |cos|
+ * there, c_out = |cos| beyond a clear substrate or outside: near total reflection it says more than c does; 0: total,
+ * or a metal. */
 static inline struct film_power film_reflect(const struct film_stack *f, sr_spectrum lambda, float c, float c_out,
                                              bool from_below)
 {
@@ -236,8 +237,8 @@ static inline sr_spectrum film_glass_f_pdf(const struct film_stack *f, float eta
     return mode == SR_RADIANCE && t.transmits ? value / (t.eta * t.eta) : value;
 }
 
-static inline bool film_glass_sample(const struct film_stack *f, float eta_below, struct sr_ggx ggx,
-                                     sr_spectrum lambda, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode,
+static inline bool film_glass_sample(const struct film_stack *f, float eta_below, struct sr_ggx ggx, sr_spectrum lambda,
+                                     sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode,
                                      struct sr_bsdf_sample *s)
 {
     if (wo.z == 0)

@@ -8,8 +8,8 @@
  * Reciprocal; with F = 1 it returns all light (to 3e-4, the error of the table). What bounces is taken to leave without
  * remembering its direction, after F_avg at each bounce: colours deepen with roughness as measured metals' do.
  * E is a table of ours, see ggx_energy.h. One alpha for all azimuths: two would need a table of two dimensions more.
- * C. Kulla & A. Conty, Revisiting physically based shading at Imageworks, 2017; the square of F_avg counts the first bounce
- * once. */
+ * C. Kulla & A. Conty, Revisiting physically based shading at Imageworks, 2017; the square of F_avg counts the first
+ * bounce once. */
 #include "bsdf/ggx_energy.h"
 #include "bsdf/microfacet.h"
 

@@ -6,12 +6,13 @@
  *     f2 = L_a(zo) L_b(zi) / (pi l_b) (1 - t_a where wo and wi are on the same side, t_a where not)
  *     L_a(z) = 1 - E_a(z), what f1 loses of the light on the side a;    l_a = 2 INTEGRAL_0^1 L_a(z) z dz    [1]
  *
- * Light that f1 loses leaves without remembering its direction: a share t_a on the other side, the rest on its own. Nothing is
- * lost then, and f is reciprocal, f(a, b) / n_b^2 = f(b, a) / n_a^2, if n_a^2 l_a t_a is the same for both sides: the flux that
- * crosses under even light. How much that is the theory does not tell; it is taken as on the smooth boundary, of the smaller of
- * both losses: t_a = (1 - F) min(l_a, l_b) / l_a from outside, F Fresnel's mean over diffuse light.
- * The inside is the denser side. E is a table of ours in the index, alpha and z, cubic between its nodes: ggx_glass_energy.h.
- * After C. Kulla & A. Conty, Revisiting physically based shading at Imageworks, 2017; single events: Walter et al. 2007. */
+ * Light that f1 loses leaves without remembering its direction: a share t_a on the other side, the rest on its own.
+ * Nothing is lost then, and f is reciprocal, f(a, b) / n_b^2 = f(b, a) / n_a^2, if n_a^2 l_a t_a is the same for both
+ * sides: the flux that crosses under even light. How much that is the theory does not tell; it is taken as on the
+ * smooth boundary, of the smaller of both losses: t_a = (1 - F) min(l_a, l_b) / l_a from outside, F Fresnel's mean over
+ * diffuse light. The inside is the denser side. E is a table of ours in the index, alpha and z, cubic between its
+ * nodes: ggx_glass_energy.h. After C. Kulla & A. Conty, Revisiting physically based shading at Imageworks, 2017; single
+ * events: Walter et al. 2007. */
 #include "bsdf/facets_interface.h"
 #include "bsdf/ggx_glass_energy.h"
 

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Private to this room: what Trowbridge and Reitz's facets reflect at the first bounce where F = 1 (Smith, height-correlated).
+/* Private to this room: what Trowbridge and Reitz's facets reflect at the first bounce where F = 1 (Smith,
+ * height-correlated).
  *
  *     E(z) = INTEGRAL D G / (4 z) dwi    [1e-6],    z = cos_theta
  *
- * Row i: alpha = (i / 47)^2 (row 0: its limit, 1e-4); column j: z = alpha q / (1 + alpha - q), q = j / 63 (column 0: its limit).
- * Written by scripts/ggx_energy_table.c, whose head tells how, to 1e-6; a test does some of it again. */
+ * Row i: alpha = (i / 47)^2 (row 0: its limit, 1e-4); column j: z = alpha q / (1 + alpha - q), q = j / 63 (column 0:
+ * its limit). Written by scripts/ggx_energy_table.c, whose head tells how, to 1e-6; a test does some of it again. */
 #ifndef SR_BSDF_GGX_ENERGY_H
 #define SR_BSDF_GGX_ENERGY_H
 

@@ -3,9 +3,9 @@
  *
  *     E(z) = INTEGRAL f |zi| dwi    [1e-5],    z = cos_theta, f in the form for importance
  *
- * First 0: from the thin side, 1: from the dense one; second k: the larger index over the smaller, 1.1 (3 / 1.1)^(k / 11);
- * row i: alpha = (i / 15)^2 (row 0: its limit, 1e-4); column j: z = alpha p / (1 + alpha - p), p = (j / 31)^(3 / 2) (column 0: its limit).
- * Written by scripts/ggx_energy_table.c, whose head tells how. */
+ * First 0: from the thin side, 1: from the dense one; second k: the larger index over the smaller, 1.1 (3 / 1.1)^(k /
+ * 11); row i: alpha = (i / 15)^2 (row 0: its limit, 1e-4); column j: z = alpha p / (1 + alpha - p), p = (j / 31)^(3 /
+ * 2) (column 0: its limit). Written by scripts/ggx_energy_table.c, whose head tells how. */
 #ifndef SR_BSDF_GGX_GLASS_ENERGY_H
 #define SR_BSDF_GGX_GLASS_ENERGY_H
 

@@ -13,15 +13,16 @@
  *     sin theta_t = sin theta_o / eta,  sin gamma_t = h cos theta_o / sqrt(eta^2 - sin^2 theta_o)
  *
  * M. J. Chiang, B. Bitterli, C. Tappan & B. Burley, A Practical and Controllable Hair and Fur Model for Production Path
- * Tracing, 2016, after Marschner et al. 2003 and d'Eon et al. 2011; four lobes as pbrt-v4 has them. M is written so that
- * it neither overflows nor needs a second form for small v; it and N integrate to 1, so that a hair that absorbs nothing
- * returns all light, from every direction.
+ * Tracing, 2016, after Marschner et al. 2003 and d'Eon et al. 2011; four lobes as pbrt-v4 has them. M is written so
+ * that it neither overflows nor needs a second form for small v; it and N integrate to 1, so that a hair that absorbs
+ * nothing returns all light, from every direction.
  *
- * Light leaves on the whole sphere; z is the normal of the ribbon on which the hair is drawn, and only divides f. Limits:
- * not reciprocal (F and T know theta_o alone, scales tilt one side only, and f bears the ribbon's cosine); far field: light
- * leaves where it entered. From a colour c, sigma_a = (ln c / q)^2, q a fit over beta_n, for a head of hair of it. From what hair
- * is dyed with by nature, sigma_a = eumelanin s_e + pheomelanin s_p per radius: s_e = (.419, .697, 1.37), s_p = (.187, .4, 1.05)
- * for red, green, blue (d'Eon et al. 2011), taken at 610, 545 and 465 nm, and exp of a parabola in lambda through these. */
+ * Light leaves on the whole sphere; z is the normal of the ribbon on which the hair is drawn, and only divides f.
+ * Limits: not reciprocal (F and T know theta_o alone, scales tilt one side only, and f bears the ribbon's cosine); far
+ * field: light leaves where it entered. From a colour c, sigma_a = (ln c / q)^2, q a fit over beta_n, for a head of
+ * hair of it. From what hair is dyed with by nature, sigma_a = eumelanin s_e + pheomelanin s_p per radius: s_e = (.419,
+ * .697, 1.37), s_p = (.187, .4, 1.05) for red, green, blue (d'Eon et al. 2011), taken at 610, 545 and 465 nm, and exp
+ * of a parabola in lambda through these. */
 #include "bsdf/microfacet.h"
 
 #define LOBES SR_HAIR_LOBES
@@ -29,7 +30,8 @@
 _Static_assert(sizeof(struct sr_bsdf_hair) <= SR_BSDF_SIZE, "too large for a BSDF at a point");
 
 static const struct sr_param params[] = {
-    {SR_PARAM_UNBOUNDED, "sigma_a", "1/radius", 0, 20, 0.3, offsetof(struct sr_bsdf_hair, sigma_a), "absorption inside"},
+    {SR_PARAM_UNBOUNDED, "sigma_a", "1/radius", 0, 20, 0.3, offsetof(struct sr_bsdf_hair, sigma_a),
+     "absorption inside"},
     {SR_PARAM_ALBEDO, "reflectance", "1", 0, 1, 0.5, offsetof(struct sr_bsdf_hair, reflectance),
      "colour of a head of such hair, where it is to give sigma_a"},
     {SR_PARAM_ENUM, "colour_from", "1", 0, 2, SR_HAIR_FROM_SIGMA_A, offsetof(struct sr_bsdf_hair, colour_from),
@@ -97,7 +99,8 @@ static uint32_t lobes(const void *self)
     return SR_LOBE_REFLECTION | SR_LOBE_TRANSMISSION | SR_LOBE_GLOSSY;
 }
 
-/* exp(-x) I_0(x), x >= 0: the series, or where it is long Hankel's (Abramowitz & Stegun 9.6.12, 9.7.1); error < 1e-6. */
+/* exp(-x) I_0(x), x >= 0: the series, or where it is long Hankel's (Abramowitz & Stegun 9.6.12, 9.7.1); error < 1e-6.
+ */
 static float bessel_scaled(float x)
 {
     if (x < 12) {

@@ -1,20 +1,19 @@
 /* SPDX-License-Identifier: MIT */
-/* Regolith: grains that scatter by a phase law, isotropic multiple scattering, the surge of brightness at opposition, and
- * relief that shadows itself, as planetary science fits it to moons and asteroids.
+/* Regolith: grains that scatter by a phase law, isotropic multiple scattering, the surge of brightness at opposition,
+ * and relief that shadows itself, as planetary science fits it to moons and asteroids.
  *
  *     f = w / (4 pi) mu_ie / (mu_ie + mu_oe) ((1 + B(a)) p(a) + H(mu_ie) H(mu_oe) - 1) (1 + C(a)) S / mu_i   [1/sr]
- *     p = (1 + c)/2 HG(-b) + (1 - c)/2 HG(b),  HG(g) = (1 - g^2) / (1 + 2 g cos a + g^2)^(3/2);  or 1 + b cos a + c (3 cos^2 a - 1)/2
- *     B = B0 / (1 + tan(a/2) / h)            shadow hiding
- *     C = C0 (1 + (1 - exp(-y)) / y) / (2 (1 + y)^2),  y = tan(a/2) / hc            coherent backscatter
- *     H(x) = 1 / (1 - w x (r0 + (1 - 2 r0 x)/2 ln((1 + x)/x))),  r0 = (1 - sqrt(1 - w)) / (1 + sqrt(1 - w))   (2002)
- *     H(x) = (1 + 2 x) / (1 + 2 x sqrt(1 - w))                                                          (1981)
+ *     p = (1 + c)/2 HG(-b) + (1 - c)/2 HG(b),  HG(g) = (1 - g^2) / (1 + 2 g cos a + g^2)^(3/2);  or 1 + b cos a + c (3
+ * cos^2 a - 1)/2 B = B0 / (1 + tan(a/2) / h)            shadow hiding C = C0 (1 + (1 - exp(-y)) / y) / (2 (1 + y)^2),
+ * y = tan(a/2) / hc            coherent backscatter H(x) = 1 / (1 - w x (r0 + (1 - 2 r0 x)/2 ln((1 + x)/x))),  r0 = (1
+ * - sqrt(1 - w)) / (1 + sqrt(1 - w))   (2002) H(x) = (1 + 2 x) / (1 + 2 x sqrt(1 - w)) (1981)
  *
- * a is the phase angle (cos a = wi.wo; 0: light from behind the viewer), w the albedo of a grain; mu_ie, mu_oe and S are the
- * effective cosines and the shadowing of slopes whose mean angle is theta_bar (Hapke 1984), mu_i, mu_o and 1 where it is 0.
- * Hapke's own r is f mu_i; papers print I/F = pi r. Authors differ in the sign of c: here c > 0 sends light back.
- * B. Hapke, Bidirectional reflectance spectroscopy 1 (1981), 3 (1984), 5 (2002); Theory of Reflectance, 2012, with K = 1.
- * Limits: H is within 4 % (1981) or 1 % (2002) of Chandrasekhar's; multiple scattering is taken as isotropic, so that bright
- * grains with a strong backward lobe or surge return more light than arrives. */
+ * a is the phase angle (cos a = wi.wo; 0: light from behind the viewer), w the albedo of a grain; mu_ie, mu_oe and S
+ * are the effective cosines and the shadowing of slopes whose mean angle is theta_bar (Hapke 1984), mu_i, mu_o and 1
+ * where it is 0. Hapke's own r is f mu_i; papers print I/F = pi r. Authors differ in the sign of c: here c > 0 sends
+ * light back. B. Hapke, Bidirectional reflectance spectroscopy 1 (1981), 3 (1984), 5 (2002); Theory of Reflectance,
+ * 2012, with K = 1. Limits: H is within 4 % (1981) or 1 % (2002) of Chandrasekhar's; multiple scattering is taken as
+ * isotropic, so that bright grains with a strong backward lobe or surge return more light than arrives. */
 #include "bsdf/hemisphere.h"
 
 struct hapke {
@@ -34,7 +33,8 @@ static const struct sr_param params[] = {
     {SR_PARAM_FLOAT, "c", "1", -1, 1, 0.4, offsetof(struct hapke, c),
      "1: all in the backward lobe, -1: in the forward one; in Legendre's form the factor of (3 cos^2 a - 1) / 2"},
     {SR_PARAM_FLOAT, "surge", "1", 0, 1, 1, offsetof(struct hapke, surge), "B0, height of the shadow-hiding surge"},
-    {SR_PARAM_FLOAT, "surge_width", "1", 0.005, 1, 0.06, offsetof(struct hapke, surge_width), "h, half its half width [rad]"},
+    {SR_PARAM_FLOAT, "surge_width", "1", 0.005, 1, 0.06, offsetof(struct hapke, surge_width),
+     "h, half its half width [rad]"},
     {SR_PARAM_FLOAT, "coherent", "1", 0, 1, 0, offsetof(struct hapke, coherent), "C0, height of the coherent surge"},
     {SR_PARAM_FLOAT, "coherent_width", "1", 0.005, 1, 0.01, offsetof(struct hapke, coherent_width), "hc, its width"},
     {SR_PARAM_FLOAT, "theta_bar", "deg", 0, 45, 0, offsetof(struct hapke, theta_bar), "mean slope of the relief"},
@@ -68,7 +68,7 @@ static sr_spectrum H(const struct hapke *m, float x)
     return 1 / (1 - m->albedo * x * (m->r0 + (1 - 2 * m->r0 * x) * half_log));
 }
 
-struct relief { // of one direction
+struct relief {   // of one direction
     float F1, F2; // 1 - E1, 1 - E2 of Hapke's: small near grazing
     float eta;    // effective cosine without the other direction
 };
@@ -80,8 +80,8 @@ static struct relief relief_of(const struct hapke *m, sr_vec3 w)
     return r;
 }
 
-/* The effective cosines, and S mu_ie / mu_i. Told for the direction nearer to the normal (u) and the other one (v), so that
- * nothing changes when wo and wi are exchanged. psi = azimuth between them. */
+/* The effective cosines, and S mu_ie / mu_i. Told for the direction nearer to the normal (u) and the other one (v), so
+ * that nothing changes when wo and wi are exchanged. psi = azimuth between them. */
 static float shadow(const struct hapke *m, sr_vec3 wo, sr_vec3 wi, float *cos_o, float *cos_i)
 {
     bool swapped = wi.z < wo.z;
@@ -90,7 +90,8 @@ static float shadow(const struct hapke *m, sr_vec3 wo, sr_vec3 wi, float *cos_o,
     float su = sqrtf(sin2_theta(u)), sv = sqrtf(sin2_theta(v)), sines = su * sv;
     float cos_psi = sines > 0 ? sr_clamp((u.x * v.x + u.y * v.y) / sines, -1, 1) : 1;
     float sin_psi = sines > 0 ? sr_min(fabsf(u.x * v.y - u.y * v.x) / sines, 1) : 0;
-    float turn = sr_min(atan2f(sin_psi, cos_psi) * SR_INV_PI, 1), far = 0.5f * (1 - cos_psi), near = 0.5f * (1 + cos_psi);
+    float turn = sr_min(atan2f(sin_psi, cos_psi) * SR_INV_PI, 1), far = 0.5f * (1 - cos_psi),
+          near = 0.5f * (1 + cos_psi);
     float beyond = near > 0 ? expf(-sin_psi / near) : 0; // exp(-2 tan(psi / 2))
     float K = sr_max(b.F1 + (1 - turn) + turn * a.F1, 1e-12f);
     float ue = m->X * (u.z + su * m->tangent * (near - cos_psi * b.F2 - far * a.F2) / K);
@@ -147,7 +148,7 @@ static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum s
     const struct hapke *m = self;
     if (u_lobe >= m->backward)
         return finish(&sr_bsdf_hapke, self, wo, draw_half_cosine(u), SR_LOBE_DIFFUSE, mode, s);
-    float g = fabsf(m->b), k = 1 + g - 2 * g * u.x; // Henyey & Greenstein's lobe about wo
+    float g = fabsf(m->b), k = 1 + g - 2 * g * u.x;                               // Henyey & Greenstein's lobe about wo
     float less = sr_clamp((1 - g) * (1 - g) * u.x / k * ((1 + g) / k + 1), 0, 2); // 1 - cos of the angle to it
     sr_vec3 up = {wo.x, wo.y, fabsf(wo.z)};
     return finish(&sr_bsdf_hapke, self, wo, about(up, sr_safe_sqrt(less * (2 - less)), 1 - less, u.y), SR_LOBE_DIFFUSE,
@@ -158,7 +159,8 @@ const struct sr_bsdf_model sr_bsdf_hapke = {
     .name = "hapke",
     .title = "Hapke, with opposition surge and roughness",
     .source = "B. Hapke, Bidirectional reflectance spectroscopy, 1981, 1984 and 2002",
-    .limits = "Multiple scattering is isotropic and H approximate: bright grains with strong lobes break the energy law.",
+    .limits =
+        "Multiple scattering is isotropic and H approximate: bright grains with strong lobes break the energy law.",
     .params = params,
     .size = sizeof(struct hapke),
     .ready = ready,

@@ -3,8 +3,8 @@
  *
  *     f = b0 (1 + r^2 / l^2)^(s / 2)       [1/sr],    r = |(wo + wi)_xy|, zero toward the mirror direction      [1]
  *
- * and a mirror's share, specular, beside it. Reciprocal, and invariant under shifts in the plane of direction cosines. Most is
- * scattered at normal incidence, the total integrated scatter
+ * and a mirror's share, specular, beside it. Reciprocal, and invariant under shifts in the plane of direction cosines.
+ * Most is scattered at normal incidence, the total integrated scatter
  *
  *     TIS = (2 pi b0 l^2 / (s + 2)) ((1 + 1 / l^2)^((s + 2) / 2) - 1),   s = -2: pi b0 l^2 ln(1 + 1 / l^2)       [1]
  *

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Private to this room: stray light of polished surfaces, which depends on one number only, how far the direction cosines are
- * from those of the mirror:
+/* Private to this room: stray light of polished surfaces, which depends on one number only, how far the direction
+ * cosines are from those of the mirror:
  *
  *     r = |(wo + wi)_xy|     [1]
  *
@@ -8,7 +8,8 @@
  *
  *     q(r) = N (1 + r^2 / l^2)^(-g / 2)    [1 per projected sr],    r < 1 + sin theta_o,    pdf = q |zi|   [1/sr]
  *
- * whose integral INTEGRAL q 2 pi r dr has an inverse in closed form. What falls outside the unit disk is no direction: lost. */
+ * whose integral INTEGRAL q 2 pi r dr has an inverse in closed form. What falls outside the unit disk is no direction:
+ * lost. */
 #ifndef SR_BSDF_HARVEY_H
 #define SR_BSDF_HARVEY_H
 

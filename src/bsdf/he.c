@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* He, Torrance, Sillion and Greenberg's surface: waves on a rough plane, from a mirror in the infrared to facets in the blue.
+/* He, Torrance, Sillion and Greenberg's surface: waves on a rough plane, from a mirror in the infrared to facets in the
+ * blue.
  *
  *     f    = delta part + specular F(c) (4 c^2 / h.z^2) S D / (pi |zo| |zi|) + reflectance / pi           [1/sr]
  *     D    = (pi^2 tau^2 / (4 lambda^2)) SUM_{m >= 1} g^m exp(-g) / (m! m) exp(-(v tau)^2 / (4 m))         [1]
  *     g    = (2 pi sigma (|zo| + |zi|) / lambda)^2,   v = 2 pi |(wo + wi)_xy| / lambda                     [1], [1/um]
  *
- * with h the half vector, c = |wo.h|. The mirror's share is specular F exp(-g) S. sigma is the root mean square height that is seen,
- * sigma0 / sqrt(1 + x^2) with x exp(x^2 / 2) = (K(wo) + K(wi)) / sqrt(8 pi), K = tan erfc(tau / (2 sigma0 tan)); S is the
- * product of S1 = (1 - erfc(q) / 2) / (1 + L), L = (exp(-q^2) / (sqrt(pi) q) - erfc(q)) / 2, q = tau / (2 sigma0 tan).
- * The wave number in v, the exp(-q^2) in L and G = 4 c^2 / h.z^2 follow the authors' corrections. For g >> 1 it becomes
- * Beckmann's facets with alpha = 2 sigma / tau. Unpolarised; wavelengths are those of the path.
- * X. D. He, K. E. Torrance, F. X. Sillion & D. P. Greenberg, A comprehensive physical model for light reflection, 1991. */
+ * with h the half vector, c = |wo.h|. The mirror's share is specular F exp(-g) S. sigma is the root mean square height
+ * that is seen, sigma0 / sqrt(1 + x^2) with x exp(x^2 / 2) = (K(wo) + K(wi)) / sqrt(8 pi), K = tan erfc(tau / (2 sigma0
+ * tan)); S is the product of S1 = (1 - erfc(q) / 2) / (1 + L), L = (exp(-q^2) / (sqrt(pi) q) - erfc(q)) / 2, q = tau /
+ * (2 sigma0 tan). The wave number in v, the exp(-q^2) in L and G = 4 c^2 / h.z^2 follow the authors' corrections. For g
+ * >> 1 it becomes Beckmann's facets with alpha = 2 sigma / tau. Unpolarised; wavelengths are those of the path. X. D.
+ * He, K. E. Torrance, F. X. Sillion & D. P. Greenberg, A comprehensive physical model for light reflection, 1991. */
 #include "bsdf/facets.h"
 
 struct he {

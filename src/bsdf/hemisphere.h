@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Private to this room: what models that reflect on the side they are looked at have in common.
  *
- * A model of this kind sees both directions above the surface (upper), draws from mixtures of the densities below, and lets
- * finish ask its own functions for f and pdf, so that a sample tells exactly what they tell. */
+ * A model of this kind sees both directions above the surface (upper), draws from mixtures of the densities below, and
+ * lets finish ask its own functions for f and pdf, so that a sample tells exactly what they tell. */
 #ifndef SR_BSDF_HEMISPHERE_H
 #define SR_BSDF_HEMISPHERE_H
 
@@ -29,7 +29,8 @@ static inline float power_of_cos(float sin2, float cos2, float n)
     return cos2 > 0 ? expf(-0.5f * n * log1pf(sr_min(sin2 / cos2, 1e30f))) : n > 0 ? 0 : 1.0f;
 }
 
-/* The direction at an angle about an axis of unit length: (sin, cos) of the angle, and its azimuth as a share of the turn. */
+/* The direction at an angle about an axis of unit length: (sin, cos) of the angle, and its azimuth as a share of the
+ * turn. */
 static inline sr_vec3 about(sr_vec3 axis, float s, float c, float turn)
 {
     float sine, cosine, sign = copysignf(1, axis.z), a = -1 / (sign + axis.z), b = axis.x * axis.y * a;
@@ -63,8 +64,8 @@ static inline float pdf_half_cosine(float cos_theta)
     return (1 + 2 * cos_theta) * (0.25f * SR_INV_PI);
 }
 
-/* Henyey & Greenstein 1941 for both directions away from the point, mean 1 over the sphere: cos_phase = wi.wo; g > 0 sends
- * light on, g < 0 back. */
+/* Henyey & Greenstein 1941 for both directions away from the point, mean 1 over the sphere: cos_phase = wi.wo; g > 0
+ * sends light on, g < 0 back. */
 static inline float henyey_greenstein(float cos_phase, float g)
 {
     float d = sr_max(1 + g * g + 2 * g * cos_phase, 1e-6f);

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* A generalised cosine lobe: a matrix turns the viewer into the axis of the highlight, so that it may be a mirror's, lean
- * away from the mirror direction, point back to the light, or be longer one way than the other.
+/* A generalised cosine lobe: a matrix turns the viewer into the axis of the highlight, so that it may be a mirror's,
+ * lean away from the mirror direction, point back to the light, or be longer one way than the other.
  *
  *     f   = reflectance / pi + specular N max(0, c_x xo xi + c_y yo yi + c_z zo zi)^n   [1/sr],    n = exponent
  *     N   = (n + 2) / (2 pi max(|c_x|, |c_y|, |c_z|)^n), normalisation "unit": E_specular <= specular;  or 1, "none"
  *     pdf = p_d cos_theta_i / pi + p_s (n + 1) / (2 pi) cos^n of the angle to (c_x xo, c_y yo, c_z zo)   [1/sr]
  *
  * Both directions point away from the surface: the mirror is c_x = c_y = -1, c_z = 1, a retroreflector has all at 1.
- * Published fits use two or three lobes: a sum of models. E. Lafortune, S.-C. Foo, K. Torrance & D. Greenberg, Non-linear
- * approximation of reflectance functions, 1997. Limits: with normalisation "none", as published fits have it, no law keeps
- * the energy. */
+ * Published fits use two or three lobes: a sum of models. E. Lafortune, S.-C. Foo, K. Torrance & D. Greenberg,
+ * Non-linear approximation of reflectance functions, 1997. Limits: with normalisation "none", as published fits have
+ * it, no law keeps the energy. */
 #include "bsdf/hemisphere.h"
 
 struct lafortune {
@@ -23,9 +23,11 @@ static const struct sr_param params[] = {
     {SR_PARAM_ALBEDO, "reflectance", "1", 0, 1, 0.3, offsetof(struct lafortune, reflectance),
      "share of light that the matte part reflects"},
     {SR_PARAM_ALBEDO, "specular", "1", 0, 1, 0.3, offsetof(struct lafortune, specular), "height of the lobe"},
-    {SR_PARAM_FLOAT, "c_x", "1", -1, 1, -1, offsetof(struct lafortune, c_x), "turns the lobe; -1: to the mirror, 1: back"},
+    {SR_PARAM_FLOAT, "c_x", "1", -1, 1, -1, offsetof(struct lafortune, c_x),
+     "turns the lobe; -1: to the mirror, 1: back"},
     {SR_PARAM_FLOAT, "c_y", "1", -1, 1, -1, offsetof(struct lafortune, c_y), "the same across the tangent"},
-    {SR_PARAM_FLOAT, "c_z", "1", -1, 1, 0.9, offsetof(struct lafortune, c_z), "below |c_x|: the lobe leans to the ground"},
+    {SR_PARAM_FLOAT, "c_z", "1", -1, 1, 0.9, offsetof(struct lafortune, c_z),
+     "below |c_x|: the lobe leans to the ground"},
     {SR_PARAM_FLOAT, "exponent", "1", 1, 1e4, 20, offsetof(struct lafortune, exponent), "sharpness of the lobe"},
     {SR_PARAM_ENUM, "normalisation", "", 0, 1, 0, offsetof(struct lafortune, normalisation), "unit|none"},
     {0},
@@ -99,13 +101,15 @@ static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum s
     sr_vec3 d = axis(m, (sr_vec3){wo.x, wo.y, fabsf(wo.z)});
     if (!(sr_length2(d) > 0))
         return false;
-    return finish(&sr_bsdf_lafortune, self, wo, draw_power_of_cos(sr_normalize(d), m->exponent, u), SR_LOBE_GLOSSY, mode, s);
+    return finish(&sr_bsdf_lafortune, self, wo, draw_power_of_cos(sr_normalize(d), m->exponent, u), SR_LOBE_GLOSSY,
+                  mode, s);
 }
 
 const struct sr_bsdf_model sr_bsdf_lafortune = {
     .name = "lafortune",
     .title = "Lafortune's generalised cosine lobe",
-    .source = "E. Lafortune, S.-C. Foo, K. Torrance & D. Greenberg, Non-linear approximation of reflectance functions, 1997",
+    .source =
+        "E. Lafortune, S.-C. Foo, K. Torrance & D. Greenberg, Non-linear approximation of reflectance functions, 1997",
     .limits = "Without normalisation, as published fits have it, no law keeps the energy.",
     .params = params,
     .size = sizeof(struct lafortune),

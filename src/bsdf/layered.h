@@ -4,10 +4,10 @@
  *     f(wo, wi) = f_coat(wo, wi) + E[ beta_walk f_base or p_medium toward the refracted wi  T_coat(wi) ]     [1/sr]
  *     transmittance of a crossing = exp(-thickness / |w.z|)      [1],   z counted in mean free paths
  *
- * A walk enters through the coat from wo; each of its meetings with the base or the medium is joined to a direction that
- * was sampled through the coat from wi, and, where the coat is rough, also through the coat by the walk's own next
- * direction, both weighed by the power heuristic. Guo, Hasan & Zhao 2018. An event is one crossing: max_depth of them at
- * most, so that coats of high index over white bases lose some light (see coated_diffuse.c); 100 is as good as all.
+ * A walk enters through the coat from wo; each of its meetings with the base or the medium is joined to a direction
+ * that was sampled through the coat from wi, and, where the coat is rough, also through the coat by the walk's own next
+ * direction, both weighed by the power heuristic. Guo, Hasan & Zhao 2018. An event is one crossing: max_depth of them
+ * at most, so that coats of high index over white bases lose some light (see coated_diffuse.c); 100 is as good as all.
  * A medium with a black albedo absorbs: only thickness 0 is clear.
  *
  * Both sides of the surface are coated. All functions here want wo.z > 0 and wi.z > 0. What they return is the same
@@ -121,9 +121,9 @@ static inline bool draw_top(const struct layers *l, sr_vec3 wo, uint32_t lobes, 
     return interface_sample(&l->top, wo, 0.5f, uniform2(rng), lobes, s);
 }
 
-/* The coat from w below to wi above: f in the form for radiance over eta^2, and the density with which w would have been
- * drawn from wi, which is what the other way of joining does. pbrt-v4 takes the density of the opposite way there, so
- * that its two weights do not sum to 1 and its f is too bright; on request we do the same. */
+/* The coat from w below to wi above: f in the form for radiance over eta^2, and the density with which w would have
+ * been drawn from wi, which is what the other way of joining does. pbrt-v4 takes the density of the opposite way there,
+ * so that its two weights do not sum to 1 and its f is too bright; on request we do the same. */
 static inline float leave_f_pdf(const struct layers *l, sr_vec3 w, sr_vec3 wi, float *pdf)
 {
     sr_vec3 back = sr_neg(w);
@@ -182,7 +182,8 @@ static inline sr_vec3 phase_sample(float g, sr_vec3 w, sr_vec2 u, float *pdf)
 }
 
 /* Between two mirrors nothing but the medium can turn light toward wi; it may still see the mirrors before it leaves:
- * down and up, or up, down and up, and so on. Returns the sum over those ways; `up` is wi's direction under the coat. */
+ * down and up, or up, down and up, and so on. Returns the sum over those ways; `up` is wi's direction under the coat.
+ */
 static inline sr_spectrum through_mirrors(const struct layers *l, sr_vec3 w, float z, sr_vec3 up, int events)
 {
     const struct sr_bsdf_coated *c = l->c;
@@ -219,7 +220,8 @@ static inline sr_spectrum layered_f(const struct layers *l, bool metal, sr_vec3 
         if (!draw_top(l, wi, SR_LOBE_TRANSMISSION, &rng, &leave)) {
             if (!rough_top || c->weighs_as_pbrt)
                 continue;
-            leave = (struct interface_sample){.wi = {0, 0, -1}, .pdf = 1}; // of no weight: the other way still leads out
+            leave =
+                (struct interface_sample){.wi = {0, 0, -1}, .pdf = 1}; // of no weight: the other way still leads out
         }
         sr_vec3 up = sr_neg(leave.wi);
         float leave_f = leave.weight / up.z; // f / pdf of the way out

@@ -4,8 +4,8 @@
  *     f(wo, wi) = albedo / (4 pi (cos_theta_o + cos_theta_i))   [1/sr],    pdf = (1 + 2 cos_theta_i) / (4 pi)   [1/sr]
  *     E(wo)     = albedo / 2 (1 - mu ln((1 + mu) / mu)),  mu = |cos_theta_o|   [1]
  *
- * albedo is that of a grain. H. v. Seeliger, Zur Photometrie der Saturnringe, 1887; S. Chandrasekhar, Radiative Transfer,
- * 1950. Limits: what is scattered twice is missing, so that bright dust comes out too dark. */
+ * albedo is that of a grain. H. v. Seeliger, Zur Photometrie der Saturnringe, 1887; S. Chandrasekhar, Radiative
+ * Transfer, 1950. Limits: what is scattered twice is missing, so that bright dust comes out too dark. */
 #include "bsdf/hemisphere.h"
 
 struct lommel_seeliger {

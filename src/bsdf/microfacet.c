@@ -13,10 +13,10 @@
  *                   schlick   F0 + (1 - F0) (1 - c)^5 with F0 = specular
  *                   one       1: for looking at shapes, and for furnaces
  *
- * Walter et al. 2007 (masking by the product), Heitz 2014 (height-correlated), Cook & Torrance 1982 (V-cavities), Schlick
- * 1994. Phong's slopes have no Lambda in closed form; like Walter's they borrow Beckmann's, so that a little more or less
- * light is masked than such a surface would, and where n is small E passes 1. Single scattering: what bounces between
- * facets is lost. */
+ * Walter et al. 2007 (masking by the product), Heitz 2014 (height-correlated), Cook & Torrance 1982 (V-cavities),
+ * Schlick 1994. Phong's slopes have no Lambda in closed form; like Walter's they borrow Beckmann's, so that a little
+ * more or less light is masked than such a surface would, and where n is small E passes 1. Single scattering: what
+ * bounces between facets is lost. */
 #include "bsdf/facets.h"
 
 enum { CONDUCTOR, SCHLICK, UNITY };

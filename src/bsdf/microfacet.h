@@ -94,8 +94,8 @@ static inline sr_vec3 ggx_sample_visible(struct sr_ggx g, sr_vec3 w, sr_vec2 u)
     return sr_normalize(m);
 }
 
-/* The microfacet that mirrors wo to wi, on the side of wo. The cosine there is |wo + wi| / 2 of two unit vectors: wo.m is off
- * by the rounding of their lengths, which at grazing is more than the cosine itself, and may even be below 0. */
+/* The microfacet that mirrors wo to wi, on the side of wo. The cosine there is |wo + wi| / 2 of two unit vectors: wo.m
+ * is off by the rounding of their lengths, which at grazing is more than the cosine itself, and may even be below 0. */
 static inline bool mirror_facet(sr_vec3 wo, sr_vec3 wi, sr_vec3 *m, float *cos_m)
 {
     *m = sr_add(wo, wi);
@@ -220,7 +220,8 @@ static inline float interface_f_pdf(const struct interface *a, sr_vec3 wo, sr_ve
 {
     *pdf = 0;
     struct turn t;
-    if (a->is_smooth || !turn_at(wo, wi, a->eta, &t) || !(lobes & (t.transmits ? SR_LOBE_TRANSMISSION : SR_LOBE_REFLECTION)))
+    if (a->is_smooth || !turn_at(wo, wi, a->eta, &t) ||
+        !(lobes & (t.transmits ? SR_LOBE_TRANSMISSION : SR_LOBE_REFLECTION)))
         return 0;
     float R = turn_fresnel(&t);
     float share_r = lobes & SR_LOBE_REFLECTION ? R : 0, share_t = lobes & SR_LOBE_TRANSMISSION ? 1 - R : 0;

@@ -9,8 +9,8 @@
  *         product  G = G' = 1 / ((1 + a) (1 + b))                  Walter et al. 2007
  *         sum      G = G' = 1 / (1 + a + b)                        what some renderers use, and our model dielectric
  *
- * eta is the index on wi's side over that on wo's; radiance is compressed with its solid angle: f / eta^2. Both alpha below
- * 1e-3, or indices within 1e-3 of each other: a delta function. What scatters twice is lost. */
+ * eta is the index on wi's side over that on wo's; radiance is compressed with its solid angle: f / eta^2. Both alpha
+ * below 1e-3, or indices within 1e-3 of each other: a delta function. What scatters twice is lost. */
 #include "bsdf/facets_interface.h"
 
 struct microfacet_dielectric {

@@ -4,10 +4,10 @@
  *     f   = reflectance (k + 1) / (2 pi) (cos_theta_i cos_theta_o)^(k - 1)   [1/sr]
  *     pdf = (k + 1) / (2 pi) cos_theta_i^k   [1/sr],     E = reflectance cos_theta_o^(k - 1)   [1]
  *
- * k = 1 is Lambert's surface; the Moon has about 0.5 (no limb darkening at full phase), cloudy planets about 0.9. In the
- * planetary form I/F = B0 mu0^k mu^(k-1), B0 = reflectance (k + 1) / 2. Cosines below 1e-6 see nothing.
- * M. Minnaert, The reciprocity principle in lunar photometry, 1941. Limits: no phase angle enters; with k < 1 it returns more
- * light than arrives near grazing, without bound. */
+ * k = 1 is Lambert's surface; the Moon has about 0.5 (no limb darkening at full phase), cloudy planets about 0.9. In
+ * the planetary form I/F = B0 mu0^k mu^(k-1), B0 = reflectance (k + 1) / 2. Cosines below 1e-6 see nothing. M.
+ * Minnaert, The reciprocity principle in lunar photometry, 1941. Limits: no phase angle enters; with k < 1 it returns
+ * more light than arrives near grazing, without bound. */
 #include "bsdf/hemisphere.h"
 
 struct minnaert {

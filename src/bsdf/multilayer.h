@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Private to this room: the recipe of an optical coating, periodic or from a file.
  *
- * Periodic: layer_count layers from the outside in, high, low, high, …  A file has a line "n k thickness_nm" for each layer,
- * from the outside in; '#' begins a comment. It replaces the periodic layers. Its indices are the same at all wavelengths. */
+ * Periodic: layer_count layers from the outside in, high, low, high, …  A file has a line "n k thickness_nm" for each
+ * layer, from the outside in; '#' begins a comment. It replaces the periodic layers. Its indices are the same at all
+ * wavelengths. */
 #ifndef SR_BSDF_MULTILAYER_H
 #define SR_BSDF_MULTILAYER_H
 
@@ -26,18 +27,50 @@ struct recipe {
 
 /* The rows of a recipe that is the member `recipe` of a model's struct. Default: seven quarter waves at 550 nm. */
 #define RECIPE_ROWS(type)                                                                                              \
-    {SR_PARAM_INT, "layer_count", "1", 0, FILM_LAYERS, 7, offsetof(type, recipe.layer_count),                          \
-     "layers from the outside in: high, low, high, …"},                                                              \
-        {SR_PARAM_UNBOUNDED, "high_eta", "1", 1, 4, 2.35, offsetof(type, recipe.high_eta),                             \
-         "index of refraction of the first, third, … layer"},                                                        \
-        {SR_PARAM_FLOAT, "high_thickness", "nm", 0, 500, 58.5106383, offsetof(type, recipe.high_thickness),            \
-         "of the first, third, … layer"},                                                                            \
-        {SR_PARAM_UNBOUNDED, "low_eta", "1", 1, 4, 1.38, offsetof(type, recipe.low_eta),                               \
-         "index of refraction of the second, fourth, … layer"},                                                      \
-        {SR_PARAM_FLOAT, "low_thickness", "nm", 0, 500, 99.6376812, offsetof(type, recipe.low_thickness),              \
-         "of the second, fourth, … layer"},                                                                          \
-        {SR_PARAM_FILE, "layers", "1", 0, 1, 0, offsetof(type, recipe.file),                                           \
-         "instead of these: lines \"n k thickness_nm\" from the outside in"}
+    {SR_PARAM_INT,                                                                                                     \
+     "layer_count",                                                                                                    \
+     "1",                                                                                                              \
+     0,                                                                                                                \
+     FILM_LAYERS,                                                                                                      \
+     7,                                                                                                                \
+     offsetof(type, recipe.layer_count),                                                                               \
+     "layers from the outside in: high, low, high, …"},                                                                \
+        {SR_PARAM_UNBOUNDED,                                                                                           \
+         "high_eta",                                                                                                   \
+         "1",                                                                                                          \
+         1,                                                                                                            \
+         4,                                                                                                            \
+         2.35,                                                                                                         \
+         offsetof(type, recipe.high_eta),                                                                              \
+         "index of refraction of the first, third, … layer"},                                                          \
+        {SR_PARAM_FLOAT,                                                                                               \
+         "high_thickness",                                                                                             \
+         "nm",                                                                                                         \
+         0,                                                                                                            \
+         500,                                                                                                          \
+         58.5106383,                                                                                                   \
+         offsetof(type, recipe.high_thickness),                                                                        \
+         "of the first, third, … layer"},                                                                              \
+        {SR_PARAM_UNBOUNDED,                                                                                           \
+         "low_eta",                                                                                                    \
+         "1",                                                                                                          \
+         1,                                                                                                            \
+         4,                                                                                                            \
+         1.38,                                                                                                         \
+         offsetof(type, recipe.low_eta),                                                                               \
+         "index of refraction of the second, fourth, … layer"},                                                        \
+        {SR_PARAM_FLOAT,                                                                                               \
+         "low_thickness",                                                                                              \
+         "nm",                                                                                                         \
+         0,                                                                                                            \
+         500,                                                                                                          \
+         99.6376812,                                                                                                   \
+         offsetof(type, recipe.low_thickness),                                                                         \
+         "of the second, fourth, … layer"},                                                                            \
+    {                                                                                                                  \
+        SR_PARAM_FILE, "layers", "1", 0, 1, 0, offsetof(type, recipe.file),                                            \
+            "instead of these: lines \"n k thickness_nm\" from the outside in"                                         \
+    }
 
 static inline bool is_blank(char c)
 {
@@ -87,10 +120,11 @@ static inline sr_status load_recipe(struct recipe *r, struct sr_arena *arena, st
                 status = sr_fail(error, SR_ERROR_INPUT, "%s:%d: more than %d layers", r->file, line, FILM_LAYERS);
             else if (!read_number(&at, 0.02f, 10, &layers.n[i]) || !read_number(&at, 0, 10, &layers.k[i]) ||
                      !read_number(&at, 0, 10000, &layers.thickness[i]))
-                status = sr_fail(error, SR_ERROR_INPUT,
-                                 "%s:%d: expected \"n k thickness_nm\" with n in 0.02 to 10, k in 0 to 10, thickness in 0 "
-                                 "to 10000 nm",
-                                 r->file, line);
+                status =
+                    sr_fail(error, SR_ERROR_INPUT,
+                            "%s:%d: expected \"n k thickness_nm\" with n in 0.02 to 10, k in 0 to 10, thickness in 0 "
+                            "to 10000 nm",
+                            r->file, line);
             else {
                 while (is_blank(*at))
                     ++at;

@@ -21,7 +21,8 @@ _Static_assert(sizeof(struct multilayer) <= SR_BSDF_SIZE, "too large for a BSDF 
 
 static const struct sr_param params[] = {
     RECIPE_ROWS(struct multilayer),
-    {SR_PARAM_UNBOUNDED, "eta", "1", 0.02, 8, 0.2, offsetof(struct multilayer, eta), "index of refraction of the metal"},
+    {SR_PARAM_UNBOUNDED, "eta", "1", 0.02, 8, 0.2, offsetof(struct multilayer, eta),
+     "index of refraction of the metal"},
     {SR_PARAM_UNBOUNDED, "k", "1", 0, 10, 3.9, offsetof(struct multilayer, k), "absorption index of the metal"},
     {SR_PARAM_FLOAT, "alpha_x", "1", 0, 1, 0, offsetof(struct multilayer, ggx.alpha_x),
      "slope width along the tangent"},

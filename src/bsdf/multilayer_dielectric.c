@@ -2,14 +2,15 @@
 /* Glass under a coating of up to 16 thin layers: dielectric mirrors, anti-reflection stacks, dichroic filters.
  *
  *     reflection:   f = R(|wo.m|) D G / (4 |zo| |zi|)                                          [1/sr]
- *     transmission: f = T(|wo.m|) D G |wi.m| |wo.m| / (|zo| |zi| (wi.m + wo.m / eta)^2)         [1/sr]  (over eta^2 for radiance)
+ *     transmission: f = T(|wo.m|) D G |wi.m| |wo.m| / (|zo| |zi| (wi.m + wo.m / eta)^2)         [1/sr]  (over eta^2 for
+ * radiance)
  *
- * R and T from the coherent sum over all layers (film.h), which is what the product of characteristic matrices gives; mean
- * of both polarisations, at each of the path's wavelengths. Layers alternate between a high and a low index, or come
- * from a file (multilayer.h), where they may absorb. Abeles 1950; Parratt 1954; Born & Wolf, 7th ed., 1.6.
+ * R and T from the coherent sum over all layers (film.h), which is what the product of characteristic matrices gives;
+ * mean of both polarisations, at each of the path's wavelengths. Layers alternate between a high and a low index, or
+ * come from a file (multilayer.h), where they may absorb. Abeles 1950; Parratt 1954; Born & Wolf, 7th ed., 1.6.
  *
- * Limits: even layers, coherent throughout; with eta = 1 the surface is smooth whatever its alpha; a path bears one index
- * eta of the glass; indices from a file are the same at all wavelengths. */
+ * Limits: even layers, coherent throughout; with eta = 1 the surface is smooth whatever its alpha; a path bears one
+ * index eta of the glass; indices from a file are the same at all wavelengths. */
 #include "bsdf/multilayer.h"
 
 struct multilayer {
@@ -94,7 +95,8 @@ static sr_spectrum albedo(const void *self, sr_vec3 wo)
 const struct sr_bsdf_model sr_bsdf_multilayer_dielectric = {
     .name = "multilayer_dielectric",
     .title = "Optical coating on glass (multilayer)",
-    .source = "F. Abeles 1950; L. G. Parratt 1954; M. Born & E. Wolf, Principles of Optics, 7th ed., 1.6; Walter et al. 2007",
+    .source =
+        "F. Abeles 1950; L. G. Parratt 1954; M. Born & E. Wolf, Principles of Optics, 7th ed., 1.6; Walter et al. 2007",
     .limits = "layers are even and fully coherent: fringes finer than the sampling are noise, not their mean",
     .params = params,
     .size = sizeof(struct multilayer),

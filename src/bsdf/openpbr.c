@@ -8,25 +8,28 @@
  *     glass:   (1 - m) t C_s F D G / (4 ci co)
  *              through it (1 - m) t C_t (1 - F) D G |wi.m| |wo.m| / (ci co (wi.m + wo.m / eta)^2)
  *     under the coat:  a = C_c^((1 / mu_i + 1 / mu_o) / 2), mu the cosines inside it;
- *         K_matte = (1 - E_c(ci))(1 - E_c(co)) / (1 - <E_c>) d,   K of the others = min(1 - E_c(ci), 1 - E_c(co)) d;   d = lerp(darkening, 1, (1 - k) / (1 - k E_b)),
- *         k = the coat's reflectance from inside: Fresnel's for mirrors, 1 - (1 - <F>) / eta_c^2 for what is rough
+ *         K_matte = (1 - E_c(ci))(1 - E_c(co)) / (1 - <E_c>) d,   K of the others = min(1 - E_c(ci), 1 - E_c(co)) d; d
+ * = lerp(darkening, 1, (1 - k) / (1 - k E_b)), k = the coat's reflectance from inside: Fresnel's for mirrors, 1 - (1 -
+ * <F>) / eta_c^2 for what is rough
  *
- * Names, weights, F82 (metals), the index under a coat, its roughening of what is below, alpha_x = r^2 sqrt(2 / (1 + (1 - a)^2)),
- * alpha_y = (1 - a) alpha_x are OpenPBR's; EON: Portsmouth, Kutz & Hill 2024; fuzz: Estevez & Kulla 2017 (sheen.c, estevez).
- * Z. Andersson, P. Edmondson, J. Guertault, A. Herubel, A. King, P. Kutz et al., OpenPBR Surface 1.1, 2024.
+ * Names, weights, F82 (metals), the index under a coat, its roughening of what is below, alpha_x = r^2 sqrt(2 / (1 + (1
+ * - a)^2)), alpha_y = (1 - a) alpha_x are OpenPBR's; EON: Portsmouth, Kutz & Hill 2024; fuzz: Estevez & Kulla 2017
+ * (sheen.c, estevez). Z. Andersson, P. Edmondson, J. Guertault, A. Herubel, A. King, P. Kutz et al., OpenPBR
+ * Surface 1.1, 2024.
  *
- * What differs from a full solution of the layers, and from OpenPBR's own suggestions: layers are joined by directional albedos
- * E of the layer above (tables of Schlick's split, made when the first material is loaded) in a form that is the same from
- * both sides, which OpenPBR leaves open, and which returns up to 1.1 times what arrives at grazing; light is lost between
- * facets; fuzz is not Zeltner's. Not here: subsurface scattering, volumes of transmission_depth, dispersion,
- * coat anisotropy, opacity, emission; they belong to media, other models and the scene. Light is refracted by the
- * index that specular_weight has changed, so that it is the same from both sides. From below, what is not glass looks as
- * from above.
+ * What differs from a full solution of the layers, and from OpenPBR's own suggestions: layers are joined by directional
+ * albedos E of the layer above (tables of Schlick's split, made when the first material is loaded) in a form that is
+ * the same from both sides, which OpenPBR leaves open, and which returns up to 1.1 times what arrives at grazing; light
+ * is lost between facets; fuzz is not Zeltner's. Not here: subsurface scattering, volumes of transmission_depth,
+ * dispersion, coat anisotropy, opacity, emission; they belong to media, other models and the scene. Light is refracted
+ * by the index that specular_weight has changed, so that it is the same from both sides. From below, what is not glass
+ * looks as from above.
  *
- * Thin walls: the glass is a pane without roughness for what goes through it; it reflects 2 F / (1 + F), all bounces inside.
- * Thin film: metal and gloss reflect lerp(weight, F, |r|^2), with r = (r_01 + r_12 e) / (1 + r_01 r_12 e), e = exp(4 pi i n d
- * cos / lambda) of both polarisations, above a base of the real index that reflects as the base does at normal incidence (as L.
- * Belcour & P. Barla 2017 and glTF's iridescence); glass has no film. For the matter below, the film's mean over phases counts. */
+ * Thin walls: the glass is a pane without roughness for what goes through it; it reflects 2 F / (1 + F), all bounces
+ * inside. Thin film: metal and gloss reflect lerp(weight, F, |r|^2), with r = (r_01 + r_12 e) / (1 + r_01 r_12 e), e =
+ * exp(4 pi i n d cos / lambda) of both polarisations, above a base of the real index that reflects as the base does at
+ * normal incidence (as L. Belcour & P. Barla 2017 and glTF's iridescence); glass has no film. For the matter below, the
+ * film's mean over phases counts. */
 #include "bsdf/burley.h"
 #include "bsdf/charlie.h"
 
@@ -34,28 +37,30 @@
 
 struct openpbr {
     sr_spectrum base_color, specular_color, transmission_color, coat_color, fuzz_color; // [1]
-    sr_spectrum rho, again, edge, absorb;  // derived: EON's colour, and what it scatters again; F82's subtrahend; ln C_c / 2
-    sr_spectrum lambda;                    // derived [nm], where there is a film
+    sr_spectrum rho, again, edge,
+        absorb;         // derived: EON's colour, and what it scatters again; F82's subtrahend; ln C_c / 2
+    sr_spectrum lambda; // derived [nm], where there is a film
     float base_weight, base_diffuse_roughness, base_metalness, specular_weight, specular_roughness,
         specular_roughness_anisotropy, specular_ior, transmission_weight, coat_weight, coat_roughness, coat_ior,
-        coat_darkening, fuzz_weight, fuzz_roughness; // [1]
+        coat_darkening, fuzz_weight, fuzz_roughness;   // [1]
     float thin_walled, film_weight, film_um, film_ior; // [1] [1] [um] [1]
     // derived
     struct sr_ggx ggx, coat;
-    float metal, gloss, glass;             // [1] shares
-    float eta, eta_s;                      // [1] of the glass, 1: light goes straight on; of the gloss under the coat
-    float gloss0, gloss_mean;              // [1] F at normal incidence, 1 / (1 - <E_s>)
-    float coat0, coat_mean, coat_inside;   // [1] the same of the coat; k of rough matter
-    float A;                               // EON's
-    float alpha, coat_alpha;               // [1] for the tables: geometric means
+    float metal, gloss, glass;           // [1] shares
+    float eta, eta_s;                    // [1] of the glass, 1: light goes straight on; of the gloss under the coat
+    float gloss0, gloss_mean;            // [1] F at normal incidence, 1 / (1 - <E_s>)
+    float coat0, coat_mean, coat_inside; // [1] the same of the coat; k of rough matter
+    float A;                             // EON's
+    float alpha, coat_alpha;             // [1] for the tables: geometric means
     struct charlie fuzz;
-    float pane;                            // [1] index of a thin wall's glass; 0: solid
+    float pane; // [1] index of a thin wall's glass; 0: solid
 };
 _Static_assert(sizeof(struct openpbr) <= SR_BSDF_SIZE, "too large for a BSDF at a point");
 
 static const struct sr_param params[] = {
     {SR_PARAM_FLOAT, "base_weight", "1", 0, 1, 1, offsetof(struct openpbr, base_weight), "scales base_color"},
-    {SR_PARAM_ALBEDO, "base_color", "1", 0, 1, 0.8, offsetof(struct openpbr, base_color), "of matte matter and of metal"},
+    {SR_PARAM_ALBEDO, "base_color", "1", 0, 1, 0.8, offsetof(struct openpbr, base_color),
+     "of matte matter and of metal"},
     {SR_PARAM_FLOAT, "base_diffuse_roughness", "1", 0, 1, 0, offsetof(struct openpbr, base_diffuse_roughness),
      "0: Lambert, 1: roughest"},
     {SR_PARAM_FLOAT, "base_metalness", "1", 0, 1, 0, offsetof(struct openpbr, base_metalness), "share of metal"},
@@ -78,17 +83,21 @@ static const struct sr_param params[] = {
      "transmittance of the coat, there and back, at normal incidence"},
     {SR_PARAM_FLOAT, "coat_roughness", "1", 0, 1, 0, offsetof(struct openpbr, coat_roughness),
      "square root of the slope width of the coat"},
-    {SR_PARAM_FLOAT, "coat_ior", "1", 1.05, 3, 1.6, offsetof(struct openpbr, coat_ior), "index of refraction of the coat"},
+    {SR_PARAM_FLOAT, "coat_ior", "1", 1.05, 3, 1.6, offsetof(struct openpbr, coat_ior),
+     "index of refraction of the coat"},
     {SR_PARAM_FLOAT, "coat_darkening", "1", 0, 1, 1, offsetof(struct openpbr, coat_darkening),
      "how much of the coat's inner reflections is counted"},
     {SR_PARAM_FLOAT, "fuzz_weight", "1", 0, 1, 0, offsetof(struct openpbr, fuzz_weight), "share that is fuzzy"},
     {SR_PARAM_ALBEDO, "fuzz_color", "1", 0, 1, 1, offsetof(struct openpbr, fuzz_color), "of the fibres"},
     {SR_PARAM_FLOAT, "fuzz_roughness", "1", 0.1, 1, 0.5, offsetof(struct openpbr, fuzz_roughness),
      "how far the fibres spread from the horizon"},
-    {SR_PARAM_FLOAT, "thin_walled", "1", 0, 1, 0, offsetof(struct openpbr, thin_walled), "above 0.5: the glass is a pane"},
-    {SR_PARAM_FLOAT, "thin_film_weight", "1", 0, 1, 0, offsetof(struct openpbr, film_weight), "share that bears a film"},
+    {SR_PARAM_FLOAT, "thin_walled", "1", 0, 1, 0, offsetof(struct openpbr, thin_walled),
+     "above 0.5: the glass is a pane"},
+    {SR_PARAM_FLOAT, "thin_film_weight", "1", 0, 1, 0, offsetof(struct openpbr, film_weight),
+     "share that bears a film"},
     {SR_PARAM_FLOAT, "thin_film_thickness", "um", 0, 10, 0.5, offsetof(struct openpbr, film_um), "of the film"},
-    {SR_PARAM_FLOAT, "thin_film_ior", "1", 1, 3, 1.4, offsetof(struct openpbr, film_ior), "index of refraction of the film"},
+    {SR_PARAM_FLOAT, "thin_film_ior", "1", 1, 3, 1.4, offsetof(struct openpbr, film_ior),
+     "index of refraction of the film"},
     {0},
 };
 
@@ -110,8 +119,8 @@ static void make_tables(void)
             float whole = 0, grazing = 0, fuzzy = 0;
             for (int k = 0; k < N * N; ++k) {
                 float u = ((float)(k / N) + 0.5f) / N, v = ((float)(k % N) + 0.5f) / N, weight, unused, cd;
-                if (ggx_sample_reflection((struct sr_ggx){alpha, alpha}, wo, (sr_vec2){0.5f * u, v}, &wi, &weight, &unused,
-                                          &cd)) {
+                if (ggx_sample_reflection((struct sr_ggx){alpha, alpha}, wo, (sr_vec2){0.5f * u, v}, &wi, &weight,
+                                          &unused, &cd)) {
                     whole += weight;
                     grazing += weight * schlick_weight(cd);
                 }
@@ -258,10 +267,12 @@ static sr_spectrum film(const struct openpbr *m, sr_spectrum n, float c)
     float s01 = (c - n1 * c1) / (c + n1 * c1), p01 = (n1 * c - c1) / (n1 * c + c1);
     sr_spectrum R;
     for (int i = 0; i < SR_LAMBDA_COUNT; ++i) {
-        float c2 = sr_safe_sqrt(1 - s2 / (n[i] * n[i])), twice = 2 * cosf(4 * SR_PI * n1 * (1e3f * m->film_um) * c1 / m->lambda[i]);
+        float c2 = sr_safe_sqrt(1 - s2 / (n[i] * n[i])),
+              twice = 2 * cosf(4 * SR_PI * n1 * (1e3f * m->film_um) * c1 / m->lambda[i]);
         float s12 = (n1 * c1 - n[i] * c2) / (n1 * c1 + n[i] * c2), p12 = (n[i] * c1 - n1 * c2) / (n[i] * c1 + n1 * c2);
         float s = s01 * s12, p = p01 * p12;
-        R[i] = 0.5f * ((s01 * s01 + s12 * s12 + s * twice) / (1 + s * s + s * twice) + (p01 * p01 + p12 * p12 + p * twice) / (1 + p * p + p * twice));
+        R[i] = 0.5f * ((s01 * s01 + s12 * s12 + s * twice) / (1 + s * s + s * twice) +
+                       (p01 * p01 + p12 * p12 + p * twice) / (1 + p * p + p * twice));
     }
     return sr_spectrum_clamp(R, 0, 1);
 }
@@ -278,7 +289,8 @@ static float pane_reflectance(const struct openpbr *m, float c)
     return 2 * F / (1 + F);
 }
 
-/* Reflectances of a facet seen at the cosine c, without and with the glass, and the share of samples that pass through. */
+/* Reflectances of a facet seen at the cosine c, without and with the glass, and the share of samples that pass through.
+ */
 struct facet {
     sr_spectrum metal, all; // [1] metal: its share counted
     sr_spectrum gloss;      // [1] Fresnel's, or the film's
@@ -349,8 +361,10 @@ static sr_spectrum through_layers(const struct openpbr *m, float above)
     if (m->fuzz_weight > 0)
         T *= 1 - m->fuzz_weight * sr_min(1, look_up(FUZZ, m->fuzz.alpha, above));
     if (m->coat_weight > 0)
-        T *= 1 + m->coat_weight * (coat_transmittance(m, inside_coat(m, above)) *
-                                       (1 - gloss_albedo(m->coat_alpha, m->coat0, above)) - 1);
+        T *=
+            1 +
+            m->coat_weight *
+                (coat_transmittance(m, inside_coat(m, above)) * (1 - gloss_albedo(m->coat_alpha, m->coat0, above)) - 1);
     return T;
 }
 

@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-/* A rough matte surface: V-shaped grooves whose walls are Lambert's, with Gaussian slopes; it looks flat where Lambert's
- * ball is shaded, because the walls that face the light are seen too.
+/* A rough matte surface: V-shaped grooves whose walls are Lambert's, with Gaussian slopes; it looks flat where
+ * Lambert's ball is shaded, because the walls that face the light are seen too.
  *
  *     a = max(theta_i, theta_o), b = min(theta_i, theta_o), p = cos(phi_i - phi_o), s = sigma   [rad]
- *     qualitative: f = rho / pi (1 - s^2 / (2 s^2 + 0.66) + C2 max(0, p) sin a tan b),  C2 = 0.45 s^2 / (s^2 + 0.09)   [1/sr]
- *     full:        f = rho / pi (1 - s^2 / (2 s^2 + 0.66) + p C2 B tan b + (1 - |p|) C3 tan((a + b) / 2))
+ *     qualitative: f = rho / pi (1 - s^2 / (2 s^2 + 0.66) + C2 max(0, p) sin a tan b),  C2 = 0.45 s^2 / (s^2 + 0.09)
+ * [1/sr] full:        f = rho / pi (1 - s^2 / (2 s^2 + 0.66) + p C2 B tan b + (1 - |p|) C3 tan((a + b) / 2))
  *                      + 0.17 rho^2 / pi s^2 / (s^2 + 0.13) (1 - p (2 b / pi)^2)
  *                  B = sin a, less (2 b / pi)^3 where p < 0;   C3 = s^2 / (8 s^2 + 0.72) (4 a b / pi^2)^2
  *     qualitative: E = rho (A + 2 C2 / pi (sin t (t / 2 - sin 2t / 4) + tan t (1 - sin^3 t) / 3)),  t = theta_o
  *
- * M. Oren & S. K. Nayar, Generalization of Lambert's reflectance model, 1994. Limits: both forms are fits to the integrals
- * over the grooves, and lose light as sigma grows, the qualitative one because it leaves out what walls cast on each other.
- * The full one returns up to 5 % more than arrives near grazing (rho = 1, sigma = 0.3), and opposite the light at grazing
- * angles its fit falls below 0 for sigma > 0.6: it is 0 there. */
+ * M. Oren & S. K. Nayar, Generalization of Lambert's reflectance model, 1994. Limits: both forms are fits to the
+ * integrals over the grooves, and lose light as sigma grows, the qualitative one because it leaves out what walls cast
+ * on each other. The full one returns up to 5 % more than arrives near grazing (rho = 1, sigma = 0.3), and opposite the
+ * light at grazing angles its fit falls below 0 for sigma > 0.6: it is 0 there. */
 #include "bsdf/clipped_ltc.h"
 
 struct oren_nayar {
@@ -71,7 +71,8 @@ static sr_spectrum f(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport
     }
     float C3 = m->C3 * sr_sqr(4 / (SR_PI * SR_PI) * a * b);
     float L1 = m->C1 + m->C2 * p * groove * (sin_b / cos_b) + (1 - fabsf(p)) * C3 * (sin_a + sin_b) / (cos_a + cos_b);
-    sr_spectrum rho = m->reflectance, value = rho * (SR_INV_PI * L1) + rho * rho * (SR_INV_PI * m->L2 * (1 - p * x * x));
+    sr_spectrum rho = m->reflectance,
+                value = rho * (SR_INV_PI * L1) + rho * rho * (SR_INV_PI * m->L2 * (1 - p * x * x));
     return L1 < 0 ? sr_spectrum_clamp(value, 0, INFINITY) : value;
 }
 

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* Phong's highlight about the mirror direction r, made reciprocal by leaving out the division by the cosine, over a Lambert
- * surface.
+/* Phong's highlight about the mirror direction r, made reciprocal by leaving out the division by the cosine, over a
+ * Lambert surface.
  *
  *     f   = reflectance / pi + specular (n + 2) / (2 pi) max(0, r.wi)^n   [1/sr],    n = exponent
  *     pdf = p_d cos_theta_i / pi + p_s (n + 1) / (2 pi) max(0, r.wi)^n   [1/sr]
  *
  * E(0) = specular (+ reflectance); while the whole lobe is above the surface, E_specular = specular cos_theta_o.
- * B. T. Phong 1975; R. Lewis, Making shaders more physically plausible, 1993; E. Lafortune & Y. Willems, Using the modified
- * Phong reflectance model for physically based rendering, 1994. Limits: the highlight darkens to grazing, where real ones
- * grow brighter. */
+ * B. T. Phong 1975; R. Lewis, Making shaders more physically plausible, 1993; E. Lafortune & Y. Willems, Using the
+ * modified Phong reflectance model for physically based rendering, 1994. Limits: the highlight darkens to grazing,
+ * where real ones grow brighter. */
 #include "bsdf/hemisphere.h"
 
 struct phong_modified {
@@ -22,7 +22,8 @@ static const struct sr_param params[] = {
      "share of light that the matte part reflects"},
     {SR_PARAM_ALBEDO, "specular", "1", 0, 1, 0.5, offsetof(struct phong_modified, specular),
      "share that the highlight reflects at normal incidence; the two together not above 1"},
-    {SR_PARAM_FLOAT, "exponent", "1", 0, 1e5, 20, offsetof(struct phong_modified, exponent), "sharpness of the highlight"},
+    {SR_PARAM_FLOAT, "exponent", "1", 0, 1e5, 20, offsetof(struct phong_modified, exponent),
+     "sharpness of the highlight"},
     {0},
 };
 
@@ -81,7 +82,8 @@ static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum s
 const struct sr_bsdf_model sr_bsdf_phong_modified = {
     .name = "phong_modified",
     .title = "Modified Phong",
-    .source = "E. Lafortune & Y. Willems, Using the modified Phong reflectance model for physically based rendering, 1994",
+    .source =
+        "E. Lafortune & Y. Willems, Using the modified Phong reflectance model for physically based rendering, 1994",
     .limits = "The highlight darkens to grazing, where real ones grow brighter.",
     .params = params,
     .size = sizeof(struct phong_modified),

@@ -1,21 +1,22 @@
 /* SPDX-License-Identifier: MIT */
-/* A brushed or woven surface: parallel cylinders of radius 1 along x, a distance d apart, sunk into ground at the height h
- * above their axes; light that is scattered once, with all shadowing and masking between the cylinders.
+/* A brushed or woven surface: parallel cylinders of radius 1 along x, a distance d apart, sunk into ground at the
+ * height h above their axes; light that is scattered once, with all shadowing and masking between the cylinders.
  *
- *     f  = 1 / (d mu_i mu_o) INTEGRAL over what is lit and seen of fm(n) (n.wi)(n.wo) ds   [1/sr],   n = (0, cos g, sin g)
- *     fm = reflectance / pi + specular (e + 2) / (2 pi) max(0, 2 (n.wi)(n.wo) - wi.wo)^e,   e = exponent (modified Phong)
+ *     f  = 1 / (d mu_i mu_o) INTEGRAL over what is lit and seen of fm(n) (n.wi)(n.wo) ds   [1/sr],   n = (0, cos g, sin
+ * g) fm = reflectance / pi + specular (e + 2) / (2 pi) max(0, 2 (n.wi)(n.wo) - wi.wo)^e,   e = exponent (modified
+ * Phong)
  *
  * Across x, let w be r (cos a, sin a). A point g of a cylinder sees w between the neighbour's tangent and its own:
- * a + asin(max(-1, 1 - d sin a)) <= g <= a + pi/2 where a <= pi/2, mirrored where a > pi/2; the ground's visible part is as
- * plain. What is lit and seen is one interval of g and one of the ground. With p = (a_i + a_o) / 2,
+ * a + asin(max(-1, 1 - d sin a)) <= g <= a + pi/2 where a <= pi/2, mirrored where a > pi/2; the ground's visible part
+ * is as plain. What is lit and seen is one interval of g and one of the ground. With p = (a_i + a_o) / 2,
  *
  *     (n.wi)(n.wo) = r_i r_o cos(g - a_i) cos(g - a_o),     2 (n.wi)(n.wo) - wi.wo = r_i r_o cos 2(g - p) - x_i x_o
  *
- * so that the matte part has a closed form, and the highlight, a peak about p, is left to Gauss's rule of 12 points on either
- * side of it. pdf: cosine for the matte part; for the highlight a normal by how much of it wo sees, and Phong's lobe about its mirror
- * direction, summed over the normals by the same rule.
- * P. Poulin & A. Fournier, A model for anisotropic reflection, 1990, who fit polynomials where this integrates. Limits: light
- * that is reflected twice is missing; scratches (cylinders taken away) are not covered. */
+ * so that the matte part has a closed form, and the highlight, a peak about p, is left to Gauss's rule of 12 points on
+ * either side of it. pdf: cosine for the matte part; for the highlight a normal by how much of it wo sees, and Phong's
+ * lobe about its mirror direction, summed over the normals by the same rule. P. Poulin & A. Fournier, A model for
+ * anisotropic reflection, 1990, who fit polynomials where this integrates. Limits: light that is reflected twice is
+ * missing; scratches (cylinders taken away) are not covered. */
 #include "bsdf/hemisphere.h"
 
 struct poulin_fournier {
@@ -33,7 +34,8 @@ static const struct sr_param params[] = {
      "between the cylinders' axes, in radii"},
     {SR_PARAM_FLOAT, "height", "1", 0, 0.95, 0, offsetof(struct poulin_fournier, height),
      "of the ground above the axes, in radii"},
-    {SR_PARAM_FLOAT, "exponent", "1", 1, 1e4, 30, offsetof(struct poulin_fournier, exponent), "sharpness of the highlight"},
+    {SR_PARAM_FLOAT, "exponent", "1", 1, 1e4, 30, offsetof(struct poulin_fournier, exponent),
+     "sharpness of the highlight"},
     {0},
 };
 
@@ -57,7 +59,7 @@ static uint32_t lobes(const void *self)
 
 #define LEAST_COSINE 1e-6f
 
-struct across { // of one direction, in the plane across the cylinders
+struct across {           // of one direction, in the plane across the cylinders
     float r, a;           // length, angle [rad]
     float g0, g1, y0, y1; // visible on the cylinder at y = 0 [rad], and of the ground up to the next one
 };
@@ -67,7 +69,8 @@ static struct across across_of(const struct poulin_fournier *m, sr_vec3 w)
     struct across v = {.r = sqrtf(w.y * w.y + w.z * w.z), .a = atan2f(w.z, w.y)};
     float sine = w.z / v.r, cosine = fabsf(w.y) / v.r, d = m->distance; // as if toward +y
     float lean = w.y < 0 ? SR_PI - v.a : v.a;
-    float g0 = sr_max(m->least, lean + asinf(sr_clamp(1 - d * sine, -1, 1))), g1 = sr_min(SR_PI - m->least, lean + SR_PI / 2);
+    float g0 = sr_max(m->least, lean + asinf(sr_clamp(1 - d * sine, -1, 1))),
+          g1 = sr_min(SR_PI - m->least, lean + SR_PI / 2);
     float y0 = m->half_width, y1 = d - m->half_width;
     if (cosine > m->height) // less steep than where the next cylinder leaves the ground
         y1 = sr_min(y1, d + (m->height * cosine - 1) / sine);
@@ -83,12 +86,13 @@ static float common(float a0, float a1, float b0, float b1)
     return sr_max(0, sr_min(a1, b1) - sr_max(a0, b0));
 }
 
-/* INTEGRAL of c(g)^e k(g) dg over g0 ... g1, c = r_i r_o cos 2(g - p) - x_i x_o; k = cos(g - a_o), and cos(g - a_i) with both */
-static float highlight(const struct poulin_fournier *m, const struct across *o, const struct across *i, float xx, float g0,
-                       float g1, bool both)
+/* INTEGRAL of c(g)^e k(g) dg over g0 ... g1, c = r_i r_o cos 2(g - p) - x_i x_o; k = cos(g - a_o), and cos(g - a_i)
+ * with both */
+static float highlight(const struct poulin_fournier *m, const struct across *o, const struct across *i, float xx,
+                       float g0, float g1, bool both)
 {
     static const float node[6] = {0.00921968287664038f, 0.0479413718147626f, 0.115048662902848f,
-                                  0.206341022856691f,  0.31608425050091f,   0.437383295744266f};
+                                  0.206341022856691f,   0.31608425050091f,   0.437383295744266f};
     static const float weight[6] = {0.0235876681932559f, 0.0534696629976592f, 0.0800391642716731f,
                                     0.101583713361533f,  0.116746268269177f,  0.124573522906701f};
     float p = 0.5f * (o->a + i->a), R = o->r * i->r, e = m->exponent, top = R - xx, sum = 0;
@@ -139,7 +143,8 @@ static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_trans
     }
     *pdf = m->diffuse_share * wi.z * SR_INV_PI;
     if (shines) { // normals by what wo sees of them: r cos(g - a) of d mu_o
-        float normals = (o.y1 > o.y0 ? o.y1 - o.y0 : 0) * wo.z * floor_power + o.r * highlight(m, &o, &i, xx, o.g0, o.g1, false);
+        float normals =
+            (o.y1 > o.y0 ? o.y1 - o.y0 : 0) * wo.z * floor_power + o.r * highlight(m, &o, &i, xx, o.g0, o.g1, false);
         float whole = (o.y1 > o.y0 ? o.y1 - o.y0 : 0) * wo.z + o.r * seen_width(&o);
         *pdf += whole > 0 ? (1 - m->diffuse_share) * (e + 1) * 0.5f * SR_INV_PI * normals / whole : 0;
     }

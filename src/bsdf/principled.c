@@ -3,24 +3,24 @@
  *
  *     wd = (1 - metallic)(1 - t),  wt = (1 - metallic) t,   t = specular_transmission
  *     above and below:  f = wd (C / pi ((1 - FL/2)(1 - FV/2) + R (FL + FV + FL FV (R - 1))) + sheen (1 - cd)^5 C_sheen)
- *                         + (metallic Fm + wd F(cd, eta) + wt F(cd, eta of this side)) D G / (4 ci co) + f_c        [1/sr]
- *     through:          f = wt sqrt(C) (1 - F) D G |wi.m| |wo.m| / (ci co (wi.m + wo.m / eta)^2)    (over eta^2 for radiance)
- *     FL = (1 - ci)^5,  FV = (1 - co)^5,  R = 2 roughness cd^2,  Fm = C + (1 - C)(1 - cd)^5
- *     alpha_x = roughness^2 / a, alpha_y = roughness^2 a,  a = sqrt(1 - 0.9 anisotropic), Trowbridge-Reitz, height-correlated
+ *                         + (metallic Fm + wd F(cd, eta) + wt F(cd, eta of this side)) D G / (4 ci co) + f_c [1/sr]
+ *     through:          f = wt sqrt(C) (1 - F) D G |wi.m| |wo.m| / (ci co (wi.m + wo.m / eta)^2)    (over eta^2 for
+ * radiance) FL = (1 - ci)^5,  FV = (1 - co)^5,  R = 2 roughness cd^2,  Fm = C + (1 - C)(1 - cd)^5 alpha_x = roughness^2
+ * / a, alpha_y = roughness^2 a,  a = sqrt(1 - 0.9 anisotropic), Trowbridge-Reitz, height-correlated
  *
- * with ci, co the cosines of wi and wo, cd = wo.m, m the half vector; f_c: clear coat and C_sheen as in disney.c. What does
- * not let light through looks the same from both sides; the glass (wt) is inside below. B. Burley, Extending the Disney
- * BRDF to a BSDF with Integrated Subsurface Scattering, 2015; Walter et al. 2007. The paper's thin surfaces and its
- * subsurface scattering are other models' work.
+ * with ci, co the cosines of wi and wo, cd = wo.m, m the half vector; f_c: clear coat and C_sheen as in disney.c. What
+ * does not let light through looks the same from both sides; the glass (wt) is inside below. B. Burley, Extending the
+ * Disney BRDF to a BSDF with Integrated Subsurface Scattering, 2015; Walter et al. 2007. The paper's thin surfaces and
+ * its subsurface scattering are other models' work.
  *
  * Limits: reciprocal, but lobes are added without taking from each other: gains energy as disney.c does, less of it. */
 #include "bsdf/burley.h"
 
 struct principled {
-    sr_spectrum reflectance; // [1]
+    sr_spectrum reflectance;          // [1]
     sr_spectrum sheen_colour, filter; // [1] derived
     float metallic, roughness, anisotropic, eta, transmission, sheen, sheen_tint, clearcoat, clearcoat_gloss; // [1]
-    struct sr_ggx ggx;       // derived
+    struct sr_ggx ggx;                                                                                        // derived
 };
 
 static const struct sr_param params[] = {
@@ -28,13 +28,17 @@ static const struct sr_param params[] = {
     {SR_PARAM_FLOAT, "metallic", "1", 0, 1, 0, offsetof(struct principled, metallic), "0: plastic or glass, 1: metal"},
     {SR_PARAM_FLOAT, "specular_transmission", "1", 0, 1, 0, offsetof(struct principled, transmission),
      "0: plastic, 1: glass"},
-    {SR_PARAM_FLOAT, "eta", "1", 1.05, 3, 1.5, offsetof(struct principled, eta), "index of refraction: inside over outside"},
-    {SR_PARAM_FLOAT, "roughness", "1", 0, 1, 0.5, offsetof(struct principled, roughness), "square root of the slope width"},
-    {SR_PARAM_FLOAT, "anisotropic", "1", 0, 1, 0, offsetof(struct principled, anisotropic), "stretches along the tangent"},
+    {SR_PARAM_FLOAT, "eta", "1", 1.05, 3, 1.5, offsetof(struct principled, eta),
+     "index of refraction: inside over outside"},
+    {SR_PARAM_FLOAT, "roughness", "1", 0, 1, 0.5, offsetof(struct principled, roughness),
+     "square root of the slope width"},
+    {SR_PARAM_FLOAT, "anisotropic", "1", 0, 1, 0, offsetof(struct principled, anisotropic),
+     "stretches along the tangent"},
     {SR_PARAM_FLOAT, "sheen", "1", 0, 1, 0, offsetof(struct principled, sheen), "cloth's light at grazing angles"},
     {SR_PARAM_FLOAT, "sheen_tint", "1", 0, 1, 0.5, offsetof(struct principled, sheen_tint), "towards the base colour"},
     {SR_PARAM_FLOAT, "clearcoat", "1", 0, 1, 0, offsetof(struct principled, clearcoat), "a second, clear lobe"},
-    {SR_PARAM_FLOAT, "clearcoat_gloss", "1", 0, 1, 1, offsetof(struct principled, clearcoat_gloss), "0: satin, 1: gloss"},
+    {SR_PARAM_FLOAT, "clearcoat_gloss", "1", 0, 1, 1, offsetof(struct principled, clearcoat_gloss),
+     "0: satin, 1: gloss"},
     {0},
 };
 
@@ -111,8 +115,7 @@ static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_trans
              (m->reflectance * (matte * SR_INV_PI) + m->sheen_colour * (m->sheen * FH));
     if (m->clearcoat > 0) {
         float pdf_c;
-        value += m->clearcoat *
-                 clearcoat_f(m->clearcoat_gloss, below ? sr_neg(t.m) : t.m, cos_o, ci, co, &pdf_c);
+        value += m->clearcoat * clearcoat_f(m->clearcoat_gloss, below ? sr_neg(t.m) : t.m, cos_o, ci, co, &pdf_c);
         *p += choose.clearcoat * pdf_c;
     }
     return value;
@@ -173,8 +176,9 @@ const struct sr_bsdf_model sr_bsdf_principled = {
     .name = "principled",
     .title = "Disney BSDF (Burley 2015), solid",
     .source = "B. Burley, Extending the Disney BRDF to a BSDF with Integrated Subsurface Scattering, 2015",
-    .limits = "gains energy: lobes are added without taking from each other, and the sheen's tint multiplies colours; no "
-              "subsurface scattering, no thin surfaces",
+    .limits =
+        "gains energy: lobes are added without taking from each other, and the sheen's tint multiplies colours; no "
+        "subsurface scattering, no thin surfaces",
     .params = params,
     .size = sizeof(struct principled),
     .ready = ready,

@@ -7,9 +7,9 @@
  *         Lambda(c) = exp(L(c)) for c < 1/2, else exp(2 L(1/2) - L(1 - c)),   L(x) = A / (1 + B x^C) + D x + E,
  *         (A ... E) = those of alpha = 0 times (1 - alpha)^2 + those of alpha = 1 times the rest
  *
- * A. C. Estevez & C. Kulla, Production Friendly Microfacet Sheen BRDF, 2017. D is normalised, INTEGRAL D cos dm = 1, but
- * belongs to no height field, and there is no Fresnel factor: the lobe gains energy where all is grazing and alpha is
- * small (neubelt). To be put on top of something else by a material that takes its share away from below. Sampled
+ * A. C. Estevez & C. Kulla, Production Friendly Microfacet Sheen BRDF, 2017. D is normalised, INTEGRAL D cos dm = 1,
+ * but belongs to no height field, and there is no Fresnel factor: the lobe gains energy where all is grazing and alpha
+ * is small (neubelt). To be put on top of something else by a material that takes its share away from below. Sampled
  * uniformly over the hemisphere. */
 #include "bsdf/charlie.h"
 
@@ -76,7 +76,8 @@ static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum s
 const struct sr_bsdf_model sr_bsdf_sheen = {
     .name = "sheen",
     .title = "Charlie sheen",
-    .source = "A. C. Estevez & C. Kulla, Production Friendly Microfacet Sheen BRDF, 2017; D. Neubelt & M. Pettineo 2013",
+    .source =
+        "A. C. Estevez & C. Kulla, Production Friendly Microfacet Sheen BRDF, 2017; D. Neubelt & M. Pettineo 2013",
     .limits = "belongs to no height field; gains light within 2 degrees of grazing where alpha is below 0.2",
     .params = params,
     .size = sizeof(struct sheen),

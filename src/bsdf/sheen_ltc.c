@@ -3,13 +3,14 @@
  *
  *     f = reflectance R(zo) D(wi) / zi   [1/sr],    D = zi A^2 / (pi |(A x + B zi, A y, zi)|^4)   [1/sr]
  *
- * x and y are wi's coordinates in the frame whose x axis is wo's azimuth; R, A and B are functions of alpha and of zo, in a table
- * of ours: the layer has the thickness 1, the density 1 and no absorption, its microflakes mirror and have the SGGX distribution
- * of fibres along the normal with cross-section alpha^2; light is followed through it at random, R is the share that comes
- * back, and A and B are those which make its directions likeliest (scripts/sheen_table.c). What passes is lost: a material puts
- * this on top of something else. D is a cosine lobe under a linear map, hence drawn exactly, and every sample weighs the same.
- * T. Zeltner, B. Burley & M. J.-Y. Chiang, Practical multiple-scattering sheen using linearly transformed cosines, 2022;
- * E. Heitz et al., The SGGX microflake distribution, 2015. */
+ * x and y are wi's coordinates in the frame whose x axis is wo's azimuth; R, A and B are functions of alpha and of zo,
+ * in a table of ours: the layer has the thickness 1, the density 1 and no absorption, its microflakes mirror and have
+ * the SGGX distribution of fibres along the normal with cross-section alpha^2; light is followed through it at random,
+ * R is the share that comes back, and A and B are those which make its directions likeliest (scripts/sheen_table.c).
+ * What passes is lost: a material puts this on top of something else. D is a cosine lobe under a linear map, hence
+ * drawn exactly, and every sample weighs the same. T. Zeltner, B. Burley & M. J.-Y. Chiang, Practical
+ * multiple-scattering sheen using linearly transformed cosines, 2022; E. Heitz et al., The SGGX microflake
+ * distribution, 2015. */
 #include "bsdf/hemisphere.h"
 #include "bsdf/sheen_ltc_table.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Private to this room: linearly transformed cosines that fit a layer of fibres, see sheen_ltc.c.
  *
- * Written by scripts/sheen_table.c; its head tells how. Row i: alpha = 0.1 + 0.9 i / 31; column j: cos theta_o = (j / 31)^2.
- * Each: A [1e-5], B [1e-5], the share of light R [1e-6]. */
+ * Written by scripts/sheen_table.c; its head tells how. Row i: alpha = 0.1 + 0.9 i / 31; column j: cos theta_o = (j /
+ * 31)^2. Each: A [1e-5], B [1e-5], the share of light R [1e-6]. */
 #ifndef SR_BSDF_SHEEN_LTC_TABLE_H
 #define SR_BSDF_SHEEN_LTC_TABLE_H
 

@@ -1,21 +1,22 @@
 /* SPDX-License-Identifier: MIT */
-/* Spectralon (sintered PTFE of 99 %), the white that others are measured against, as it was measured: 8 deg / hemispherical
- * reflectance of 250 ... 2500 nm from calibrations, and directions from a goniometer, where it is no Lambert surface: 7 % brighter than
- * one where light and viewer are at the normal, darker to grazing, up to 80 % brighter toward the forward direction at 70 deg.
+/* Spectralon (sintered PTFE of 99 %), the white that others are measured against, as it was measured: 8 deg /
+ * hemispherical reflectance of 250 ... 2500 nm from calibrations, and directions from a goniometer, where it is no
+ * Lambert surface: 7 % brighter than one where light and viewer are at the normal, darker to grazing, up to 80 %
+ * brighter toward the forward direction at 70 deg.
  *
  *     f = rho(lambda) / pi (1 + SUM_mab c_mab (Z_ma(wi) Z_mb(wo) + Z_mb(wi) Z_ma(wo)))   [1/sr]
  *
- * Z_mk(w) = R_(m + 2 k)^m (sin theta) exp(i m phi) are Zernike's polynomials on the disk under the hemisphere, real parts of
- * products taken, up to order 8, without the constant one (Koenderink, van Doorn & Stavridi 1996: modes of scattering). They are
- * orthogonal to 1 by projected solid angle, so that f is reciprocal and E(wo) = rho(lambda) from every direction, and that is
- * what the calibration says of 8 deg. c = c0 + (redness - 1) c1, redness = (0.0209 lambda / um + 0.978)^2.94: the forward
- * scattering of long waves is stronger. pdf = cos_theta_i / pi.
+ * Z_mk(w) = R_(m + 2 k)^m (sin theta) exp(i m phi) are Zernike's polynomials on the disk under the hemisphere, real
+ * parts of products taken, up to order 8, without the constant one (Koenderink, van Doorn & Stavridi 1996: modes of
+ * scattering). They are orthogonal to 1 by projected solid angle, so that f is reciprocal and E(wo) = rho(lambda) from
+ * every direction, and that is what the calibration says of 8 deg. c = c0 + (redness - 1) c1, redness = (0.0209 lambda
+ * / um + 0.978)^2.94: the forward scattering of long waves is stronger. pdf = cos_theta_i / pi.
  *
  * Data: panel 4 of the GRIT laboratory and its published goniometer fit for 0 ... 70 deg (A comprehensive BRF model for
- * Spectralon, IEEE TGRS 2024), normalised by its integral over the whole hemisphere, which makes it reciprocal; the modes
- * reproduce it with 0.4 % rms, 3.1 % at most (both at 70 deg), 1.2 % within 60 deg. "9710" ... are other panels' calibrations.
- * Limits: beyond 70 deg extrapolated; wavelengths outside 250 ... 2500 nm as at the ends; the peak within 5 deg of the
- * direction to the light is not in the data. */
+ * Spectralon, IEEE TGRS 2024), normalised by its integral over the whole hemisphere, which makes it reciprocal; the
+ * modes reproduce it with 0.4 % rms, 3.1 % at most (both at 70 deg), 1.2 % within 60 deg. "9710" ... are other panels'
+ * calibrations. Limits: beyond 70 deg extrapolated; wavelengths outside 250 ... 2500 nm as at the ends; the peak within
+ * 5 deg of the direction to the light is not in the data. */
 #include "bsdf/hemisphere.h"
 #include "bsdf/spectralon_data.h"
 
@@ -71,7 +72,8 @@ static sr_spectrum f(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport
     float turned[2] = {1, dot}; // (sin_i sin_o)^m cos m (phi_i - phi_o), of two m
     const float *c0 = spectralon_steady, *c1 = spectralon_growing;
     for (int order = 0; order <= ORDER; ++order) {
-        int first = order == 0, count = (ORDER - order) / 2 + 1, grows = GROWING_ORDER < order ? 0 : (GROWING_ORDER - order) / 2 + 1;
+        int first = order == 0, count = (ORDER - order) / 2 + 1,
+            grows = GROWING_ORDER < order ? 0 : (GROWING_ORDER - order) / 2 + 1;
         float q_o[5], q_i[5], s = 0, g = 0;
         radial(order, count, t_o, q_o);
         radial(order, count, t_i, q_i);

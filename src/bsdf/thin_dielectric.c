@@ -4,8 +4,9 @@
  *     R = [ 2 Rs / (1 + Rs) + 2 Rp / (1 + Rp) ] / 2,    T = 1 - R    [1]
  *
  * with Fresnel's reflectances Rs and Rp of one boundary for the two polarisations: all bounces inside, incoherent, each
- * polarisation by itself, for it stays what it is from bounce to bounce (Stokes 1862). sums_as_pbrt puts the mean of Rs and
- * Rp in the place of both: T of n = 1.52 is then too small by 0.003 at 45 deg and 0.013 at 60. Nothing is absorbed. */
+ * polarisation by itself, for it stays what it is from bounce to bounce (Stokes 1862). sums_as_pbrt puts the mean of Rs
+ * and Rp in the place of both: T of n = 1.52 is then too small by 0.003 at 45 deg and 0.013 at 60. Nothing is absorbed.
+ */
 #include "bsdf/microfacet.h"
 
 static const struct sr_param params[] = {

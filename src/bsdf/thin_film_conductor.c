@@ -4,8 +4,9 @@
  *     f = R(|wo.m|) D(m) G(wo, wi) / (4 cos_theta_o cos_theta_i)   [1/sr],    m = (wo + wi) / |wo + wi|
  *     R = (|r_s|^2 + |r_p|^2) / 2,   r = (r01 + r12 e^2) / (1 + r01 r12 e^2),   e = exp(2 pi i n1 d cos_1 / lambda)
  *
- * Airy's sum of all coherent bounces in the film, at each of the path's wavelengths; indices relative to the outside. The
- * film follows the microfacets. Airy 1833; Born & Wolf, 7th ed., 1.6.4; Belcour & Barla 2017 (in a microfacet model).
+ * Airy's sum of all coherent bounces in the film, at each of the path's wavelengths; indices relative to the outside.
+ * The film follows the microfacets. Airy 1833; Born & Wolf, 7th ed., 1.6.4; Belcour & Barla 2017 (in a microfacet
+ * model).
  *
  * Limits: single scattering between facets, one even thickness, light coherent over the film: for thicknesses of many
  * wavelengths the fringes are finer than a picture's samples and appear as noise, not as their mean. */
@@ -26,8 +27,7 @@ static const struct sr_param params[] = {
     {SR_PARAM_UNBOUNDED, "film_k", "1", 0, 4, 0, offsetof(struct thin_film, film_k), "absorption index of the film"},
     {SR_PARAM_UNBOUNDED, "eta", "1", 0.02, 8, 0.2, offsetof(struct thin_film, eta), "index of refraction of the metal"},
     {SR_PARAM_UNBOUNDED, "k", "1", 0, 10, 3.9, offsetof(struct thin_film, k), "absorption index of the metal"},
-    {SR_PARAM_FLOAT, "alpha_x", "1", 0, 1, 0, offsetof(struct thin_film, ggx.alpha_x),
-     "slope width along the tangent"},
+    {SR_PARAM_FLOAT, "alpha_x", "1", 0, 1, 0, offsetof(struct thin_film, ggx.alpha_x), "slope width along the tangent"},
     {SR_PARAM_FLOAT, "alpha_y", "1", 0, 1, 0, offsetof(struct thin_film, ggx.alpha_y), "slope width across it"},
     {0},
 };

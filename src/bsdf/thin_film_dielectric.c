@@ -2,8 +2,9 @@
 /* Glass or water under one thin film, or a film in air: oil on water, an anti-reflection coating, a soap bubble.
  *
  *     reflection:   f = R(|wo.m|) D G / (4 |zo| |zi|)                                          [1/sr]
- *     transmission: f = T(|wo.m|) D G |wi.m| |wo.m| / (|zo| |zi| (wi.m + wo.m / eta)^2)         [1/sr]  (over eta^2 for radiance)
- *     r = (r01 + r12 e^2) / (1 + r01 r12 e^2),   e = exp(2 pi i n1 d cos_1 / lambda),   R = (|r_s|^2 + |r_p|^2) / 2
+ *     transmission: f = T(|wo.m|) D G |wi.m| |wo.m| / (|zo| |zi| (wi.m + wo.m / eta)^2)         [1/sr]  (over eta^2 for
+ * radiance) r = (r01 + r12 e^2) / (1 + r01 r12 e^2),   e = exp(2 pi i n1 d cos_1 / lambda),   R = (|r_s|^2 + |r_p|^2) /
+ * 2
  *
  * Airy's sum of all coherent bounces, at each of the path's wavelengths. Light leaves in the directions that bare glass
  * would give it. T = 1 - R where the film is clear; a film that absorbs (film_k) looks different from its two sides and
@@ -28,8 +29,7 @@ static const struct sr_param params[] = {
     {SR_PARAM_UNBOUNDED, "film_k", "1", 0, 4, 0, offsetof(struct thin_film, film_k), "absorption index of the film"},
     {SR_PARAM_FLOAT, "eta", "1", 0.25, 4, 1.5, offsetof(struct thin_film, eta),
      "index of refraction of what is below the film: inside over outside"},
-    {SR_PARAM_FLOAT, "alpha_x", "1", 0, 1, 0, offsetof(struct thin_film, ggx.alpha_x),
-     "slope width along the tangent"},
+    {SR_PARAM_FLOAT, "alpha_x", "1", 0, 1, 0, offsetof(struct thin_film, ggx.alpha_x), "slope width along the tangent"},
     {SR_PARAM_FLOAT, "alpha_y", "1", 0, 1, 0, offsetof(struct thin_film, ggx.alpha_y), "slope width across it"},
     {0},
 };
@@ -97,8 +97,9 @@ const struct sr_bsdf_model sr_bsdf_thin_film_dielectric = {
     .name = "thin_film_dielectric",
     .title = "Thin film on glass, or in air (Airy)",
     .source = "G. B. Airy 1833; M. Born & E. Wolf, Principles of Optics, 7th ed., 1.6.4; Walter et al. 2007",
-    .limits = "the film is even and fully coherent: fringes finer than the sampling are noise, not their mean; a film in "
-              "air (eta = 1) is smooth",
+    .limits =
+        "the film is even and fully coherent: fringes finer than the sampling are noise, not their mean; a film in "
+        "air (eta = 1) is smooth",
     .params = params,
     .size = sizeof(struct thin_film),
     .ready = ready,

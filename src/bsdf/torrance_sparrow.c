@@ -5,10 +5,10 @@
  *     D = N exp(-theta_m^2 / alpha^2),    N so that INTEGRAL D(m) m.z dm = 1       [1/sr]
  *     G = min(1, 2 m.z |zo| / c, 2 m.z |zi| / c)                                   [1]
  *
- * The paper leaves the constant of D to a measurement at one angle; ours is that of a surface whose facets cover it once. Its
- * alpha is 1 / c of the paper, where tilts are in degrees. F is exact, of the index eta + i k relative to the outside. Blinn
- * (1977) found G's short form, valid for facets that are seen in any direction.
- * K. E. Torrance & E. M. Sparrow, Theory for off-specular reflection from roughened surfaces, 1967. */
+ * The paper leaves the constant of D to a measurement at one angle; ours is that of a surface whose facets cover it
+ * once. Its alpha is 1 / c of the paper, where tilts are in degrees. F is exact, of the index eta + i k relative to the
+ * outside. Blinn (1977) found G's short form, valid for facets that are seen in any direction. K. E. Torrance & E. M.
+ * Sparrow, Theory for off-specular reflection from roughened surfaces, 1967. */
 #include "bsdf/facets.h"
 
 struct torrance_sparrow {
@@ -68,9 +68,9 @@ static float facet_share(const struct torrance_sparrow *m, sr_vec3 wo)
     return facets > 0 ? larger(facets / (facets + m->matte), 0.1f) : 0;
 }
 
-/* Tilts are drawn by the density 2 t exp(-(t / alpha)^2) / (alpha^2 cut), azimuths evenly, and of each pair of a groove's
- * facets the one that is seen: over the cosine |wo.m| the density is D' min(1 / |zo|, 2 m.z / |wo.m|) [1/sr], where D' is as
- * D but for a factor near 1. */
+/* Tilts are drawn by the density 2 t exp(-(t / alpha)^2) / (alpha^2 cut), azimuths evenly, and of each pair of a
+ * groove's facets the one that is seen: over the cosine |wo.m| the density is D' min(1 / |zo|, 2 m.z / |wo.m|) [1/sr],
+ * where D' is as D but for a factor near 1. */
 __attribute__((noinline)) static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode,
                                                    float *p)
 {

@@ -3,9 +3,9 @@
  *
  *     f = reflectance / pi + specular exp(-tan^2 d (cos^2 p / ax^2 + sin^2 p / ay^2)) / (4 pi ax ay |zo| |zi|)   [1/sr]
  *
- * d and p are the half vector's angles. Reciprocal. At alpha = 0.2 E is 0.928 straight on and 0.918 at 80 degrees, but at the
- * horizon it grows without a bound, as 1 / |zo|: at alpha = 0.5, 1.33 at 85 and 5.1 at 89 degrees.
- * A. Dür, An improved normalization for the Ward reflectance model, 2006. */
+ * d and p are the half vector's angles. Reciprocal. At alpha = 0.2 E is 0.928 straight on and 0.918 at 80 degrees, but
+ * at the horizon it grows without a bound, as 1 / |zo|: at alpha = 0.5, 1.33 at 85 and 5.1 at 89 degrees. A. Dür, An
+ * improved normalization for the Ward reflectance model, 2006. */
 #include "bsdf/ward.h"
 
 static const struct sr_param params[] = WARD_PARAMS;

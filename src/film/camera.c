@@ -3,10 +3,11 @@
  *
  *     s_c = integral of L c dlambda,      XYZ = M s,      M minimises sum over patches |M s(patch) - XYZ(patch)|^2
  *
- * The patches of a chart are seen by the camera under daylight of the white balance's temperature (below 4000 K a black body) and
- * wanted as they look under the output's white; both are relative to a white's green and Y, and M is scaled so that the luminance
- * of white is right. A. Langlands & L. Fascione, PhysLight, 2020; Pharr, Jakob & Humphreys, Physically Based Rendering, 2023, 5.4.2.
- * Limits: curves are 0 beyond 380 … 720 nm; colours that the chart lacks may come out otherwise than an observer sees them. */
+ * The patches of a chart are seen by the camera under daylight of the white balance's temperature (below 4000 K a black
+ * body) and wanted as they look under the output's white; both are relative to a white's green and Y, and M is scaled
+ * so that the luminance of white is right. A. Langlands & L. Fascione, PhysLight, 2020; Pharr, Jakob & Humphreys,
+ * Physically Based Rendering, 2023, 5.4.2. Limits: curves are 0 beyond 380 … 720 nm; colours that the chart lacks may
+ * come out otherwise than an observer sees them. */
 #include "film/camera_data.h"
 #include "film/film.h"
 
@@ -49,7 +50,8 @@ static double patch_at(int patch, int nm)
     double t = (nm - FIRST_NM) % STEP_NM / (double)STEP_NM;
     if (nm < FIRST_NM || nm > LAST_NM)
         return 0;
-    return 1e-3 * (i + 1 < PATCH_COUNT ? (1 - t) * patch_data[patch][i] + t * patch_data[patch][i + 1] : patch_data[patch][i]);
+    return 1e-3 *
+           (i + 1 < PATCH_COUNT ? (1 - t) * patch_data[patch][i] + t * patch_data[patch][i + 1] : patch_data[patch][i]);
 }
 
 /* Of daylight, or of a black body [relative]; beyond the table as at its ends. */
@@ -61,7 +63,9 @@ static double source_at(double T, int nm)
     double xy[2], m, at = (double)(nm < FIRST_NM ? FIRST_NM : nm > LAST_NM ? LAST_NM : nm) - FIRST_NM;
     sr_daylight_xy(T, xy);
     m = 0.0241 + 0.2562 * xy[0] - 0.7341 * xy[1];
-    double share[3] = {1, (-1.3515 - 1.7703 * xy[0] + 5.9114 * xy[1]) / m, (0.0300 - 31.4424 * xy[0] + 30.0717 * xy[1]) / m}, sum = 0;
+    double share[3] = {1, (-1.3515 - 1.7703 * xy[0] + 5.9114 * xy[1]) / m,
+                       (0.0300 - 31.4424 * xy[0] + 30.0717 * xy[1]) / m},
+           sum = 0;
     int i = (int)at / STEP_NM < PATCH_COUNT - 2 ? (int)at / STEP_NM : PATCH_COUNT - 2;
     double t = at / STEP_NM - i;
     for (int k = 0; k < 3; ++k)
@@ -75,7 +79,8 @@ static void solve(const double a[3][3], const double b[3][3], double x[3][3])
     double c[3][3], determinant = 0;
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
-            c[i][j] = a[(i + 1) % 3][(j + 1) % 3] * a[(i + 2) % 3][(j + 2) % 3] - a[(i + 1) % 3][(j + 2) % 3] * a[(i + 2) % 3][(j + 1) % 3];
+            c[i][j] = a[(i + 1) % 3][(j + 1) % 3] * a[(i + 2) % 3][(j + 2) % 3] -
+                      a[(i + 1) % 3][(j + 2) % 3] * a[(i + 2) % 3][(j + 1) % 3];
     for (int j = 0; j < 3; ++j)
         determinant += a[0][j] * c[0][j];
     for (int i = 0; i < 3; ++i)

@@ -4,22 +4,25 @@
  *     mean = S / N,   S = sum over blocks of s_b,   N = sum of n_b
  *     var(mean) <= [ sum s_b^2 / n_b  -  S^2 / N ] / ((B - 1) N)
  *
- * With independent blocks (replicates) this is the unbiased estimate. The blocks of one scrambled net repel each other, so
- * that the mean varies less than this says: the estimate is conservative (docs/decisions/0003-error-bars.md). */
+ * With independent blocks (replicates) this is the unbiased estimate. The blocks of one scrambled net repel each other,
+ * so that the mean varies less than this says: the estimate is conservative (docs/decisions/0003-error-bars.md). */
 #include "film/film.h"
 
 #include <string.h>
 
 static const uint32_t MAX_SIDE = 1u << 20; // [pixel]
 
-sr_status sr_film_create(const struct sr_film_settings *settings, bool with_aov, struct sr_film **out, struct sr_error *error)
+sr_status sr_film_create(const struct sr_film_settings *settings, bool with_aov, struct sr_film **out,
+                         struct sr_error *error)
 {
     *out = NULL;
     int64_t w = (int64_t)settings->x1 - settings->x0, h = (int64_t)settings->y1 - settings->y0;
     if (w <= 0 || h <= 0)
-        return sr_fail(error, SR_ERROR_INPUT, "the picture has no pixels: crop x %d to %d, y %d to %d", settings->x0, settings->x1, settings->y0, settings->y1);
+        return sr_fail(error, SR_ERROR_INPUT, "the picture has no pixels: crop x %d to %d, y %d to %d", settings->x0,
+                       settings->x1, settings->y0, settings->y1);
     if (w > MAX_SIDE || h > MAX_SIDE)
-        return sr_fail(error, SR_ERROR_RESOURCE, "a picture of %lld x %lld pixels is too large: at most %u a side", (long long)w, (long long)h, MAX_SIDE);
+        return sr_fail(error, SR_ERROR_RESOURCE, "a picture of %lld x %lld pixels is too large: at most %u a side",
+                       (long long)w, (long long)h, MAX_SIDE);
     struct sr_film *film = sr_alloc(sizeof *film);
     size_t n = (size_t)w * (size_t)h;
     if (film) {
@@ -29,7 +32,8 @@ sr_status sr_film_create(const struct sr_film_settings *settings, bool with_aov,
     }
     if (!film || !film->pixels || (with_aov && !film->aov) || (settings->buckets && !film->buckets)) {
         sr_film_destroy(film);
-        return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for a picture of %lld x %lld pixels", (long long)w, (long long)h);
+        return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for a picture of %lld x %lld pixels", (long long)w,
+                       (long long)h);
     }
     film->settings = *settings;
     film->width = (uint32_t)w;
@@ -216,7 +220,8 @@ static double pixel_variance(const struct sr_film *film, uint32_t x, uint32_t y,
 {
     double w[3] = {0, 0, 0};
     w[c] = 1;
-    return mean_variance(&film->pixels[(size_t)y * film->width + x], c) + sr_film_splat_variance(film, x, y, x + 1, y + 1, w);
+    return mean_variance(&film->pixels[(size_t)y * film->width + x], c) +
+           sr_film_splat_variance(film, x, y, x + 1, y + 1, w);
 }
 
 static void join_pixel(struct sr_film_pixel *a, const struct sr_film_pixel *b)
@@ -228,10 +233,13 @@ static void join_pixel(struct sr_film_pixel *a, const struct sr_film_pixel *b)
         return;
     }
     // the sums of a film whose plain mean and spread are those of the halves together
-    struct sr_film_pixel p = {.n = a->n + b->n, .blocks = a->blocks + b->blocks - 1, .dropped = a->dropped + b->dropped,
+    struct sr_film_pixel p = {.n = a->n + b->n,
+                              .blocks = a->blocks + b->blocks - 1,
+                              .dropped = a->dropped + b->dropped,
                               .largest = sr_max(a->largest, b->largest)};
     for (int c = 0; c < 3; ++c) {
-        double mean = (a->sum[c] / a->n + b->sum[c] / b->n) / 2, variance = (mean_variance(a, c) + mean_variance(b, c)) / 4;
+        double mean = (a->sum[c] / a->n + b->sum[c] / b->n) / 2,
+               variance = (mean_variance(a, c) + mean_variance(b, c)) / 4;
         p.sum[c] = mean * p.n;
         p.square[c] = p.sum[c] * mean + (isfinite(variance) ? variance * ((double)(p.blocks - 1) * p.n) : 0);
     }
@@ -243,7 +251,10 @@ void sr_film_join_halves(struct sr_film *a, const struct sr_film *b)
     size_t count = (size_t)a->width * a->height, buckets = a->settings.buckets;
     for (size_t i = 0; i < count * buckets; ++i) { // means, and then sums of all samples
         uint32_t n = a->pixels[i / buckets].n, m = b->pixels[i / buckets].n;
-        double mean = n && m ? (a->buckets[i] / n + b->buckets[i] / m) / 2 : n ? a->buckets[i] / n : m ? b->buckets[i] / m : 0;
+        double mean = n && m ? (a->buckets[i] / n + b->buckets[i] / m) / 2
+                      : n    ? a->buckets[i] / n
+                      : m    ? b->buckets[i] / m
+                             : 0;
         a->buckets[i] = mean * ((double)n + m);
     }
     for (size_t i = 0; i < count; ++i)
@@ -325,7 +336,8 @@ static void pool_row(const struct variances *v, int64_t y, int width, int reach,
         const double *own = v->variance[y % ROWS][c] + reach;
         for (int64_t j = y - reach; j <= y + reach; ++j)
             for (int i = 0; i <= 2 * reach; ++i) {
-                const double *variance = v->variance[(j + ROWS) % ROWS][c] + i, *is_known = v->is_known[(j + ROWS) % ROWS][c] + i;
+                const double *variance = v->variance[(j + ROWS) % ROWS][c] + i,
+                             *is_known = v->is_known[(j + ROWS) % ROWS][c] + i;
                 for (int k = 0; k < width; ++k) {
                     sum[k] += variance[k];
                     count[k] += is_known[k];
@@ -337,7 +349,8 @@ static void pool_row(const struct variances *v, int64_t y, int width, int reach,
     }
 }
 
-void sr_film_errors(const struct sr_film *film, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1, bool pooled, double *standard_error)
+void sr_film_errors(const struct sr_film *film, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1, bool pooled,
+                    double *standard_error)
 {
     int reach = pooled ? POOL : 0;
     for (uint32_t x = x0; x < x1; x += STRIP) {
@@ -352,7 +365,8 @@ void sr_film_errors(const struct sr_film *film, uint32_t x0, uint32_t y0, uint32
     }
 }
 
-struct sr_film_mean sr_film_region_mean(const struct sr_film *film, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1, const double w[3])
+struct sr_film_mean sr_film_region_mean(const struct sr_film *film, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1,
+                                        const double w[3])
 {
     struct sr_film_mean m = {0};
     double variance = 0, fourth = 0, blocks = 0;
@@ -362,7 +376,8 @@ struct sr_film_mean sr_film_region_mean(const struct sr_film *film, uint32_t x0,
             const struct sr_film_pixel *p = &film->pixels[(size_t)y * film->width + x];
             double se = 0;
             for (int c = 0; c < 3; ++c) {
-                m.mean += (p->n ? w[c] * p->sum[c] / p->n : 0) + w[c] * sr_film_splat_mean(film, (size_t)y * film->width + x, c);
+                m.mean += (p->n ? w[c] * p->sum[c] / p->n : 0) +
+                          w[c] * sr_film_splat_mean(film, (size_t)y * film->width + x, c);
                 // the channels of a sample go together: standard deviations add, which is the upper bound
                 double v = mean_variance(p, c);
                 se += fabs(w[c]) * sqrt(isfinite(v) ? v : 0);

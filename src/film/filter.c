@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Pixel filters by importance sampling: positions are drawn in proportion to |f|, so a sample's weight is one number but
- * for its sign, and a sample belongs to one pixel.
+/* Pixel filters by importance sampling: positions are drawn in proportion to |f|, so a sample's weight is one number
+ * but for its sign, and a sample belongs to one pixel.
  *
  *     value = integral f(p) L(p) dp / integral f(p) dp = E[ sign(f) L ] integral|f| / integral f
  *
@@ -78,7 +78,8 @@ static float gaussian_value(const void *self, sr_vec2 p)
 {
     const struct gaussian *f = self;
     float s = -0.5f / sr_sqr(f->sigma);
-    float x = expf(s * sr_sqr(p.x)) - expf(s * sr_sqr(f->xradius)), y = expf(s * sr_sqr(p.y)) - expf(s * sr_sqr(f->yradius));
+    float x = expf(s * sr_sqr(p.x)) - expf(s * sr_sqr(f->xradius)),
+          y = expf(s * sr_sqr(p.y)) - expf(s * sr_sqr(f->yradius));
     return sr_max(0, x) * sr_max(0, y);
 }
 
@@ -113,11 +114,15 @@ static float sinc_value(const void *self, sr_vec2 p)
 }
 
 static const struct sr_filter_model box_model = {"box", box_params, sizeof(struct box), box_value, radius_of};
-static const struct sr_filter_model triangle_model = {"triangle", triangle_params, sizeof(struct triangle), triangle_value, radius_of};
-static const struct sr_filter_model gaussian_model = {"gaussian", gaussian_params, sizeof(struct gaussian), gaussian_value, radius_of};
-static const struct sr_filter_model mitchell_model = {"mitchell", mitchell_params, sizeof(struct mitchell), mitchell_value, radius_of};
+static const struct sr_filter_model triangle_model = {"triangle", triangle_params, sizeof(struct triangle),
+                                                      triangle_value, radius_of};
+static const struct sr_filter_model gaussian_model = {"gaussian", gaussian_params, sizeof(struct gaussian),
+                                                      gaussian_value, radius_of};
+static const struct sr_filter_model mitchell_model = {"mitchell", mitchell_params, sizeof(struct mitchell),
+                                                      mitchell_value, radius_of};
 static const struct sr_filter_model sinc_model = {"sinc", sinc_params, sizeof(struct sinc), sinc_value, radius_of};
-const struct sr_filter_model *const sr_filter_models[] = {&box_model, &gaussian_model, &mitchell_model, &sinc_model, &triangle_model, NULL};
+const struct sr_filter_model *const sr_filter_models[] = {&box_model,  &gaussian_model, &mitchell_model,
+                                                          &sinc_model, &triangle_model, NULL};
 
 const struct sr_filter_model *sr_filter_model_find(const char *name)
 {
@@ -129,10 +134,10 @@ const struct sr_filter_model *sr_filter_model_find(const char *name)
 
 /* ---- drawing positions ----
  *
- * Every filter is a product of one function along x and one along y. Each axis has a table of the positions that divide the
- * integral of |f| into equal shares, linear between them: a position costs one look-up, and the map is monotone, so that
- * numbers that are well spread stay so. Within a share (1/2048) the density is even instead of following f. Where f changes
- * its sign is remembered by position. */
+ * Every filter is a product of one function along x and one along y. Each axis has a table of the positions that divide
+ * the integral of |f| into equal shares, linear between them: a position costs one look-up, and the map is monotone, so
+ * that numbers that are well spread stay so. Within a share (1/2048) the density is even instead of following f. Where
+ * f changes its sign is remembered by position. */
 
 enum { STEPS = 8 }; // of the quadrature, for each share
 
@@ -158,7 +163,8 @@ static sr_vec2 find_peak(const struct sr_filter *f)
 }
 
 /* false: too many changes of sign, or no integral. *mean_sign: expectation of the sign of what is drawn. */
-static bool divide_axis(struct sr_filter_axis *a, const struct sr_filter *f, int axis, sr_vec2 peak, double *mean_sign, double *integral)
+static bool divide_axis(struct sr_filter_axis *a, const struct sr_filter *f, int axis, sr_vec2 peak, double *mean_sign,
+                        double *integral)
 {
     enum { CELLS = SR_FILTER_SHARES * STEPS };
     double radius = (double)(axis == 0 ? f->radius.x : f->radius.y), width = 2 * radius / CELLS, all = 0;
@@ -194,7 +200,8 @@ static bool divide_axis(struct sr_filter_axis *a, const struct sr_filter *f, int
 
     *mean_sign = 0;
     for (int i = 0; i < SR_FILTER_SHARES; ++i) { // of each share, the part of its width that is positive
-        double lo = (double)a->position[i], hi = (double)a->position[i + 1], at = lo, sign = a->begins_negative ? -1 : 1, signed_width = 0;
+        double lo = (double)a->position[i], hi = (double)a->position[i + 1], at = lo,
+               sign = a->begins_negative ? -1 : 1, signed_width = 0;
         for (uint32_t k = 0; k < a->sign_changes; ++k, sign = -sign) {
             double change = fmin(fmax((double)a->change[k], lo), hi);
             signed_width += sign * (change - at);
@@ -206,7 +213,8 @@ static bool divide_axis(struct sr_filter_axis *a, const struct sr_filter *f, int
     return true;
 }
 
-sr_status sr_filter_prepare(struct sr_arena *arena, const struct sr_filter_model *model, const void *self, struct sr_filter *out, struct sr_error *error)
+sr_status sr_filter_prepare(struct sr_arena *arena, const struct sr_filter_model *model, const void *self,
+                            struct sr_filter *out, struct sr_error *error)
 {
     *out = (struct sr_filter){.model = model, .self = self, .radius = model->radius(self)};
     if (model == &box_model) { // uniform: no table
@@ -220,12 +228,15 @@ sr_status sr_filter_prepare(struct sr_arena *arena, const struct sr_filter_model
     double signs[2], integrals[2];
     for (int i = 0; i < 2; ++i)
         if (!divide_axis(&axes[i], out, i, peak, &signs[i], &integrals[i]))
-            return sr_fail(error, SR_ERROR_INPUT, "PixelFilter \"%s\": it is zero, not finite, or changes its sign more than %d times along an axis",
-                           model->name, SR_FILTER_SIGN_CHANGES);
+            return sr_fail(
+                error, SR_ERROR_INPUT,
+                "PixelFilter \"%s\": it is zero, not finite, or changes its sign more than %d times along an axis",
+                model->name, SR_FILTER_SIGN_CHANGES);
     double mean_sign = signs[0] * signs[1];
     mean_sign = model->value(self, peak) < 0 ? -mean_sign : mean_sign; // f = f(x, peak) f(peak, y) / f(peak, peak)
     if (!(mean_sign > 1e-6))
-        return sr_fail(error, SR_ERROR_INPUT, "PixelFilter \"%s\": its integral is not positive, so it cannot be normalised", model->name);
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "PixelFilter \"%s\": its integral is not positive, so it cannot be normalised", model->name);
     out->weight = (float)((model->value(self, peak) < 0 ? -1 : 1) / mean_sign);
     out->inverse_integral = (double)model->value(self, peak) / (integrals[0] * integrals[1]);
     out->axes[0] = &axes[0];

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Splats: exact sums of what paths from the lights bring to the picture, whoever adds first.
  *
- *     pixel = (sum over paths of f(raster - centre) rgb) / paths,      var(pixel) = sum over groups (m_g - m)^2 / (G (G - 1))
+ *     pixel = (sum over paths of f(raster - centre) rgb) / paths,      var(pixel) = sum over groups (m_g - m)^2 / (G (G
+ * - 1))
  *
- * A sum is a signed integer of 128 bits in two words, in units of 2^-56: integers add in any order to the same number, floats do
- * not. The lower word is added to atomically; whoever makes it overflow carries, so that the pair is right when all are done
- * (while others add, a reader may miss a carry that is on its way). G groups of paths, m_g the mean of each, tell the error.
- * Limits: a splat is rounded to 2^-56 [the picture's unit]; those beyond 2^39 are dropped and counted. */
+ * A sum is a signed integer of 128 bits in two words, in units of 2^-56: integers add in any order to the same number,
+ * floats do not. The lower word is added to atomically; whoever makes it overflow carries, so that the pair is right
+ * when all are done (while others add, a reader may miss a carry that is on its way). G groups of paths, m_g the mean
+ * of each, tell the error. Limits: a splat is rounded to 2^-56 [the picture's unit]; those beyond 2^39 are dropped and
+ * counted. */
 #include "film/film.h"
 
 static const double UNITS = 0x1p56, LARGEST = 0x1p39;
@@ -32,9 +34,12 @@ sr_status sr_film_add_splats(struct sr_film *film, uint32_t groups, struct sr_er
     struct sr_film_splats *s = sr_alloc(sizeof *s);
     groups = groups < 2 ? 2 : groups > SR_SPLAT_GROUPS ? SR_SPLAT_GROUPS : groups;
     if (s)
-        *s = (struct sr_film_splats){.groups = groups, .words = sr_alloc((size_t)film->width * film->height * sr_film_splats_B(groups))};
+        *s = (struct sr_film_splats){.groups = groups,
+                                     .words = sr_alloc((size_t)film->width * film->height * sr_film_splats_B(groups))};
     film->splats = s;
-    return s && s->words ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for the splats of %u x %u pixels", film->width, film->height);
+    return s && s->words ? SR_OK
+                         : sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for the splats of %u x %u pixels",
+                                   film->width, film->height);
 }
 
 static uint64_t *words_of(const struct sr_film *film, size_t pixel, int channel, uint32_t group)
@@ -70,7 +75,8 @@ static double sum_of(const uint64_t words[2])
     return is_negative ? -sum : sum;
 }
 
-void sr_film_splat(struct sr_film *film, const struct sr_filter *filter, uint32_t group, sr_vec2 raster, const float rgb[3])
+void sr_film_splat(struct sr_film *film, const struct sr_filter *filter, uint32_t group, sr_vec2 raster,
+                   const float rgb[3])
 {
     double pixels = (double)film->width * film->height;
     float largest = sr_max(fabsf(rgb[0]), sr_max(fabsf(rgb[1]), fabsf(rgb[2])));
@@ -78,7 +84,8 @@ void sr_film_splat(struct sr_film *film, const struct sr_filter *filter, uint32_
     float x = raster.x - 0.5f - (float)film->settings.x0, y = raster.y - 0.5f - (float)film->settings.y0;
     float first_x = floorf(x - filter->radius.x) + 1, last_x = floorf(x + filter->radius.x);
     float first_y = floorf(y - filter->radius.y) + 1, last_y = floorf(y + filter->radius.y);
-    // far beside the picture, near the sensor's own plane, values are large without bound: they are none of the picture's
+    // far beside the picture, near the sensor's own plane, values are large without bound: they are none of the
+    // picture's
     if (last_x < 0 || last_y < 0 || first_x >= (float)film->width || first_y >= (float)film->height)
         return;
     if (!(isfinite(rgb[0]) && isfinite(rgb[1]) && isfinite(rgb[2])) || isnan(x) || isnan(y) ||
@@ -90,7 +97,8 @@ void sr_film_splat(struct sr_film *film, const struct sr_filter *filter, uint32_
     int y0 = (int)sr_max(first_y, 0), y1 = (int)sr_min(last_y, (float)(film->height - 1));
     for (int j = y0; j <= y1; ++j)
         for (int i = x0; i <= x1; ++i) {
-            double f = (double)filter->model->value(filter->self, (sr_vec2){x - (float)i, y - (float)j}) * filter->inverse_integral / pixels;
+            double f = (double)filter->model->value(filter->self, (sr_vec2){x - (float)i, y - (float)j}) *
+                       filter->inverse_integral / pixels;
             for (int c = 0; c < 3; ++c)
                 if (f * (double)rgb[c] != 0)
                     add(words_of(film, (size_t)j * film->width + (size_t)i, c, group), f * (double)rgb[c]);
@@ -119,7 +127,8 @@ double sr_film_splat_mean(const struct sr_film *film, size_t pixel, int channel)
     return n > 0 ? sum * ((double)film->width * film->height) / n : 0;
 }
 
-double sr_film_splat_variance(const struct sr_film *film, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1, const double w[3])
+double sr_film_splat_variance(const struct sr_film *film, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1,
+                              const double w[3])
 {
     const struct sr_film_splats *s = film->splats;
     double sums[SR_SPLAT_GROUPS] = {0}, all = 0, n = s ? all_paths(s) : 0, spread = 0, used = 0;
@@ -144,8 +153,9 @@ double sr_film_splat_variance(const struct sr_film *film, uint32_t x0, uint32_t 
 
 /* ---- sums that travel ----
  *
- * The numbers of groups, pixels and dropped values, paths of each group; then each sum that is not 0: how many that are 0 it comes
- * after, and its value, the sign in the lowest bit. Numbers go in groups of 7 bits, lowest first, the 8th bit: more follow. */
+ * The numbers of groups, pixels and dropped values, paths of each group; then each sum that is not 0: how many that are
+ * 0 it comes after, and its value, the sign in the lowest bit. Numbers go in groups of 7 bits, lowest first, the 8th
+ * bit: more follow. */
 
 typedef unsigned __int128 uint128;
 enum { LONGEST = 19 }; // [B] of 128 bits, 7 in each
@@ -216,7 +226,8 @@ bool sr_film_splats_add(struct sr_film *film, const uint8_t *bytes, size_t size)
     const uint8_t *at = bytes, *end = bytes + size;
     size_t count = (size_t)film->width * film->height * 3 * s->groups, next = 0;
     uint128 groups, pixels, dropped, paths, gap, sum;
-    if (!get(&at, end, &groups) || groups != s->groups || !get(&at, end, &pixels) || pixels != (uint128)film->width * film->height || !get(&at, end, &dropped))
+    if (!get(&at, end, &groups) || groups != s->groups || !get(&at, end, &pixels) ||
+        pixels != (uint128)film->width * film->height || !get(&at, end, &dropped))
         return false;
     __atomic_fetch_add(&s->dropped, (uint64_t)dropped, __ATOMIC_RELAXED);
     for (uint32_t g = 0; g < s->groups; ++g) {

@@ -4,9 +4,9 @@
  *     Var(index) = SUM over pixels (d index / d L_pixel)^2 u_pixel^2
  *     d index / d L_pixel = (d index / d L_k) w_pixel / w_k + (d index / d E) c_pixel
  *
- * with k the pixel's source and E the direct or indirect illuminance. A pixel's u is the weighted sum of the errors of its
- * channels, as if these moved together: an upper bound. Sources are connected pixels above the threshold. Sources of the
- * formulas: glare.h. */
+ * with k the pixel's source and E the direct or indirect illuminance. A pixel's u is the weighted sum of the errors of
+ * its channels, as if these moved together: an upper bound. Sources are connected pixels above the threshold. Sources
+ * of the formulas: glare.h. */
 #include "glare/glare.h"
 
 #include <stdlib.h>
@@ -19,17 +19,18 @@ const char *const sr_glare_index_names[SR_GLARE_INDICES] = {"UGR", "DGP", "DGP, 
 double sr_glare_position(double sigma, double tau)
 {
     tau = tau > 90 ? 90 : tau;
-    double a = (35.2 - 0.31889 * tau - 1.22 * exp(-2 * tau / 9)) * 1e-3, b = (21 + 0.26667 * tau - 0.002963 * tau * tau) * 1e-5;
+    double a = (35.2 - 0.31889 * tau - 1.22 * exp(-2 * tau / 9)) * 1e-3,
+           b = (21 + 0.26667 * tau - 0.002963 * tau * tau) * 1e-5;
     return exp(a * sigma + b * sigma * sigma);
 }
 
 /* ---- pixels ---- */
 
 struct pixel {
-    float L, u;               // [cd/m^2]
-    float omega, projected;   // [sr]
-    float d[3];               // camera space
-    uint32_t source1;         // index of its source, from 1; 0: none. Before: parent in the forest of sources
+    float L, u;             // [cd/m^2]
+    float omega, projected; // [sr]
+    float d[3];             // camera space
+    uint32_t source1;       // index of its source, from 1; 0: none. Before: parent in the forest of sources
 };
 
 struct field {
@@ -37,7 +38,8 @@ struct field {
     struct pixel *pixels;
 };
 
-static void set_fisheye(struct pixel *p, enum sr_fisheye kind, double rim, struct sr_sensor_raster raster, uint32_t x, uint32_t y)
+static void set_fisheye(struct pixel *p, enum sr_fisheye kind, double rim, struct sr_sensor_raster raster, uint32_t x,
+                        uint32_t y)
 {
     double omega, projected, d[3] = {0, 0, 1};
     sr_fisheye_pixel(kind, rim, raster, x, y, &omega, &projected);
@@ -102,7 +104,8 @@ static sr_status set_luminances(const struct sr_image *image, struct field *f, b
             u += *has_errors && weight[c] != 0 ? fabs(weight[c]) * (double)at[error_channel[c]] : 0;
         }
         if (!isfinite(L) && f->pixels[i].omega > 0)
-            return sr_fail(error, SR_ERROR_INPUT, "pixel %zu,%zu is infinite or not a number", i % f->width, i / f->width);
+            return sr_fail(error, SR_ERROR_INPUT, "pixel %zu,%zu is infinite or not a number", i % f->width,
+                           i / f->width);
         f->pixels[i].L = (float)fmax(L, 0);
         f->pixels[i].u = (float)(isfinite(u) ? u : 0);
     }
@@ -251,7 +254,8 @@ static double evaluate(enum sr_glare_index index, const struct draft *drafts, co
 }
 
 /* Standard error by the pixels' own; slope: room for one number a source. */
-static double propagate(enum sr_glare_index index, const struct field *f, const struct draft *drafts, const struct totals *t, double omega, double *slope)
+static double propagate(enum sr_glare_index index, const struct field *f, const struct draft *drafts,
+                        const struct totals *t, double omega, double *slope)
 {
     double sum, ignored, by_E[2], by_mean = 0, h;
     evaluate(index, drafts, t, &sum);
@@ -272,7 +276,8 @@ static double propagate(enum sr_glare_index index, const struct field *f, const 
     double by_sum = sum > 0 ? (combine(index, sum * 1.0001, t) - combine(index, sum * 0.9999, t)) / (2e-4 * sum) : 0;
     for (uint32_t k = 0; k < t->n; ++k) {
         double L = drafts[k].s.L;
-        slope[k] = by_sum * (term(index, &drafts[k].s, L * 1.0001, t) - term(index, &drafts[k].s, L * 0.9999, t)) / (2e-4 * L) / drafts[k].s.omega;
+        slope[k] = by_sum * (term(index, &drafts[k].s, L * 1.0001, t) - term(index, &drafts[k].s, L * 0.9999, t)) /
+                   (2e-4 * L) / drafts[k].s.omega;
     }
     double variance = 0;
     for (size_t i = 0; i < (size_t)f->width * f->height; ++i) {
@@ -294,13 +299,15 @@ static int compare_sources(const void *a, const void *b)
 /* ---- all together ---- */
 
 /* Means over the field and the task, the threshold. */
-static sr_status survey(const struct field *f, const struct sr_glare_options *o, struct sr_glare *g, struct sr_error *error)
+static sr_status survey(const struct field *f, const struct sr_glare_options *o, struct sr_glare *g,
+                        struct sr_error *error)
 {
     double light = 0, task_omega = 0, task_light = 0, variance = 0;
     const float *axis = NULL;
     if (o->task[2] > 0) {
         if (!(o->task[0] >= 0 && o->task[0] < f->width && o->task[1] >= 0 && o->task[1] < f->height))
-            return sr_fail(error, SR_ERROR_INPUT, "the task's middle %g,%g is outside of the picture", o->task[0], o->task[1]);
+            return sr_fail(error, SR_ERROR_INPUT, "the task's middle %g,%g is outside of the picture", o->task[0],
+                           o->task[1]);
         axis = f->pixels[(size_t)o->task[1] * f->width + (size_t)o->task[0]].d;
     }
     for (size_t i = 0; i < (size_t)f->width * f->height; ++i) {
@@ -324,7 +331,8 @@ static sr_status survey(const struct field *f, const struct sr_glare_options *o,
     return SR_OK;
 }
 
-static sr_status measure(struct field *f, const struct sr_glare_options *o, struct sr_arena *arena, struct sr_glare *g, struct sr_error *error)
+static sr_status measure(struct field *f, const struct sr_glare_options *o, struct sr_arena *arena, struct sr_glare *g,
+                         struct sr_error *error)
 {
     if (survey(f, o, g, error) != SR_OK)
         return error->status;
@@ -348,7 +356,8 @@ static sr_status measure(struct field *f, const struct sr_glare_options *o, stru
             enum sr_glare_index index = (enum sr_glare_index)i;
             bool needs_source = index != SR_GLARE_DGP && index != SR_GLARE_DGP_LOW_LIGHT;
             g->index[i] = needs_source && !t.n ? (double)NAN : evaluate(index, drafts, &t, &sum);
-            g->error[i] = g->has_errors && isfinite(g->index[i]) ? propagate(index, f, drafts, &t, g->omega, slope) : (double)NAN;
+            g->error[i] =
+                g->has_errors && isfinite(g->index[i]) ? propagate(index, f, drafts, &t, g->omega, slope) : (double)NAN;
         }
         qsort(kept, g->source_count, sizeof *kept, compare_sources);
         g->sources = kept;
@@ -361,8 +370,8 @@ static sr_status measure(struct field *f, const struct sr_glare_options *o, stru
     return error->status;
 }
 
-sr_status sr_glare_measure(const struct sr_image *image, const struct sr_glare_options *o, struct sr_arena *arena, struct sr_glare *g,
-                           struct sr_error *error)
+sr_status sr_glare_measure(const struct sr_image *image, const struct sr_glare_options *o, struct sr_arena *arena,
+                           struct sr_glare *g, struct sr_error *error)
 {
     *g = (struct sr_glare){0};
     bool is_fisheye = o->projection <= SR_GLARE_STEREOGRAPHIC;
@@ -374,7 +383,8 @@ sr_status sr_glare_measure(const struct sr_image *image, const struct sr_glare_o
     if (image->x0 || image->y0 || image->width != image->full_width || image->height != image->full_height)
         return sr_fail(error, SR_ERROR_INPUT, "a part of a picture does not tell where it looks");
     if ((uint64_t)image->width * image->height > (1u << 30))
-        return sr_fail(error, SR_ERROR_INPUT, "a picture of %u x %u pixels is too large for glare", image->width, image->height);
+        return sr_fail(error, SR_ERROR_INPUT, "a picture of %u x %u pixels is too large for glare", image->width,
+                       image->height);
     struct field f = {image->width, image->height, sr_alloc((size_t)image->width * image->height * sizeof *f.pixels)};
     if (!f.pixels)
         return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for %u x %u pixels", image->width, image->height);
@@ -382,7 +392,8 @@ sr_status sr_glare_measure(const struct sr_image *image, const struct sr_glare_o
         for (uint32_t x = 0; x < f.width; ++x) {
             struct pixel *p = &f.pixels[(size_t)y * f.width + x];
             if (is_fisheye)
-                set_fisheye(p, (enum sr_fisheye)o->projection, angle * pi / 360, (struct sr_sensor_raster){f.width, f.height}, x, y);
+                set_fisheye(p, (enum sr_fisheye)o->projection, angle * pi / 360,
+                            (struct sr_sensor_raster){f.width, f.height}, x, y);
             else
                 set_spherical(p, o->projection == SR_GLARE_EQUAL_AREA, f.width, f.height, x, y);
         }

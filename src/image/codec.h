@@ -27,11 +27,13 @@ struct sr_image_codec {
 extern const struct sr_image_codec sr_image_codec_exr, sr_image_codec_png, sr_image_codec_jpeg, sr_image_codec_tga,
     sr_image_codec_pfm, sr_image_codec_hdr, sr_image_codec_qoi;
 
-/* Whether the pixels are more than the size of the file backs, and not yet proven: such an image has memory for one row. */
+/* Whether the pixels are more than the size of the file backs, and not yet proven: such an image has memory for one
+ * row. */
 bool sr_image_is_trial(const struct sr_image_source *source, const struct sr_image *image);
 /* Where the row y of an image goes that sr_image_create_for has made; all rows of a trial go to the same place. */
 void *sr_image_row(const struct sr_image_source *source, const struct sr_image *image, uint32_t y);
-/* sr_image_create, but first refuses what the size of the file cannot back; or a trial, whose pixels are for sr_image_row alone. */
+/* sr_image_create, but first refuses what the size of the file cannot back; or a trial, whose pixels are for
+ * sr_image_row alone. */
 sr_status sr_image_create_for(const struct sr_image_source *source, uint64_t width, uint64_t height,
                               uint32_t channel_count, const char *const *names, enum sr_image_type type,
                               struct sr_image **image, struct sr_error *error);

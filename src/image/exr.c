@@ -16,7 +16,8 @@ static bool is_mine(const uint8_t *data, size_t size)
     return size >= 4 && memcmp(data, "\x76\x2f\x31\x01", 4) == 0;
 }
 
-/* Of this thread. The library may hold its lock while it complains, so that asking it for its user data could wait for ever. */
+/* Of this thread. The library may hold its lock while it complains, so that asking it for its user data could wait for
+ * ever. */
 static _Thread_local struct sr_exr_job *current_job;
 
 static void on_error(exr_const_context_t context, exr_result_t code, const char *text)
@@ -192,7 +193,8 @@ static exr_result_t read_chunk(struct chunks *k, const exr_chunk_info_t *info, u
         return EXR_ERR_CORRUPT_CHUNK;
     for (int16_t c = 0; c < k->pipeline.channel_count; c++) {
         exr_coding_channel_info_t *channel = &k->pipeline.channels[c];
-        channel->decode_to_ptr = k->is_trial ? NULL : (uint8_t *)(image->floats + sr_image_index(image, x, y) + k->place[c]);
+        channel->decode_to_ptr =
+            k->is_trial ? NULL : (uint8_t *)(image->floats + sr_image_index(image, x, y) + k->place[c]);
         channel->user_data_type = EXR_PIXEL_FLOAT;
         channel->user_bytes_per_element = 4;
         channel->user_pixel_stride = (int32_t)(image->channel_count * 4);
@@ -304,7 +306,8 @@ static sr_status read_part(exr_context_t exr, struct sr_exr_job *job, struct sr_
         status = read_attributes(exr, *image, error);
     }
     if (status == SR_OK) {
-        struct chunks k = {.exr = exr, .image = *image, .place = place, .is_trial = sr_image_is_trial(job->source, *image)};
+        struct chunks k = {
+            .exr = exr, .image = *image, .place = place, .is_trial = sr_image_is_trial(job->source, *image)};
         exr_result_t result = storage == EXR_STORAGE_TILED ? read_tiles(&k) : read_lines(&k, &data);
         if (k.is_started)
             exr_decoding_destroy(exr, &k.pipeline);
@@ -323,10 +326,8 @@ static sr_status decode(const struct sr_image_source *source, struct sr_image **
     init.size_fn = source_size;
     exr_context_t exr = NULL;
     exr_result_t result = exr_start_read(&exr, source->label, &init);
-    sr_status status =
-        result == EXR_ERR_SUCCESS
-            ? read_part(exr, &job, image, error)
-            : fail(&job, error, "the EXR header is damaged or cut short", result);
+    sr_status status = result == EXR_ERR_SUCCESS ? read_part(exr, &job, image, error)
+                                                 : fail(&job, error, "the EXR header is damaged or cut short", result);
     if (exr)
         exr_finish(&exr);
     current_job = NULL;

@@ -11,7 +11,7 @@
 struct sr_exr_job {
     const struct sr_image_source *source;
     struct sr_array *out;
-    char message[256]; // the library's first complaint
+    char message[256];  // the library's first complaint
     bool has_no_memory; // which the library may call by another name
 };
 /* Where this thread's complaints go: NULL, nowhere. Returns where they went before. */
@@ -22,6 +22,7 @@ exr_context_initializer_t sr_exr_begin(struct sr_exr_job *job);
 void *sr_exr_alloc(size_t size);
 
 /* exr_write.c */
-sr_status sr_exr_encode(const struct sr_image *image, const struct sr_image_write_options *options, struct sr_array *out, struct sr_error *error);
+sr_status sr_exr_encode(const struct sr_image *image, const struct sr_image_write_options *options,
+                        struct sr_array *out, struct sr_error *error);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* OpenEXR through the OpenEXRCore C interface, written to memory: float32 scan lines, ZIP, one part, so that every bit of a float
- * is kept. */
+/* OpenEXR through the OpenEXRCore C interface, written to memory: float32 scan lines, ZIP, one part, so that every bit
+ * of a float is kept. */
 #include "image/exr.h"
 
 #include <limits.h>
@@ -58,7 +58,8 @@ static exr_result_t write_header(exr_context_t exr, const struct sr_image *image
     return result == EXR_ERR_SUCCESS ? exr_write_header(exr) : result;
 }
 
-/* Chunks are packed by all threads, some at a time, and written in their order, so that the bytes do not depend on the threads. */
+/* Chunks are packed by all threads, some at a time, and written in their order, so that the bytes do not depend on the
+ * threads. */
 struct packed {
     void *data;
     size_t size; // [B]
@@ -69,11 +70,11 @@ struct packing {
     exr_context_t exr;
     const struct sr_image *image;
     const float *floats;
-    uint32_t lines, begin, end;   // of a chunk; the chunks that are packed now
+    uint32_t lines, begin, end; // of a chunk; the chunks that are packed now
     atomic_uint next;
-    struct packed *packed;        // [end - begin]
+    struct packed *packed;            // [end - begin]
     exr_encode_pipeline_t *pipelines; // one for each thread
-    struct sr_exr_job *jobs;                 // likewise
+    struct sr_exr_job *jobs;          // likewise
 };
 
 static exr_result_t keep_packed(exr_encode_pipeline_t *pipeline)
@@ -87,7 +88,8 @@ static exr_result_t keep_packed(exr_encode_pipeline_t *pipeline)
     return EXR_ERR_SUCCESS;
 }
 
-static exr_result_t pack_chunk(struct packing *k, uint32_t chunk, exr_encode_pipeline_t *pipeline, struct packed *packed)
+static exr_result_t pack_chunk(struct packing *k, uint32_t chunk, exr_encode_pipeline_t *pipeline,
+                               struct packed *packed)
 {
     const struct sr_image *image = k->image;
     uint32_t y = chunk * k->lines;
@@ -95,7 +97,8 @@ static exr_result_t pack_chunk(struct packing *k, uint32_t chunk, exr_encode_pip
     exr_chunk_info_t info;
     exr_result_t result = exr_write_scanline_chunk_info(k->exr, 0, image->y0 + (int32_t)y, &info);
     if (result == EXR_ERR_SUCCESS)
-        result = is_first ? exr_encoding_initialize(k->exr, 0, &info, pipeline) : exr_encoding_update(k->exr, 0, &info, pipeline);
+        result = is_first ? exr_encoding_initialize(k->exr, 0, &info, pipeline)
+                          : exr_encoding_update(k->exr, 0, &info, pipeline);
     for (int16_t c = 0; c < pipeline->channel_count && result == EXR_ERR_SUCCESS; c++) {
         exr_coding_channel_info_t *channel = &pipeline->channels[c];
         int place = sr_image_find_channel(image, channel->channel_name);
@@ -136,7 +139,8 @@ static exr_result_t write_packed(struct packing *k, struct packed *p, uint32_t c
     return result;
 }
 
-static exr_result_t write_lines(exr_context_t exr, const struct sr_image *image, const float *floats, struct sr_exr_job *job)
+static exr_result_t write_lines(exr_context_t exr, const struct sr_image *image, const float *floats,
+                                struct sr_exr_job *job)
 {
     enum { EACH = 8, SMALL = 1 << 16 };
     int32_t lines = 0;
@@ -148,9 +152,13 @@ static exr_result_t write_lines(exr_context_t exr, const struct sr_image *image,
         threads = 1;
     threads = threads < chunks ? threads : chunks;
     struct sr_arena arena = {0};
-    struct packing k = {.exr = exr, .image = image, .floats = floats, .lines = (uint32_t)lines,
+    struct packing k = {.exr = exr,
+                        .image = image,
+                        .floats = floats,
+                        .lines = (uint32_t)lines,
                         .packed = sr_arena_alloc(&arena, (size_t)threads * EACH * sizeof *k.packed),
-                        .pipelines = sr_arena_alloc(&arena, threads * sizeof *k.pipelines), .jobs = sr_arena_alloc(&arena, threads * sizeof *k.jobs)};
+                        .pipelines = sr_arena_alloc(&arena, threads * sizeof *k.pipelines),
+                        .jobs = sr_arena_alloc(&arena, threads * sizeof *k.jobs)};
     if (!k.packed || !k.pipelines || !k.jobs)
         result = EXR_ERR_OUT_OF_MEMORY;
     for (; k.begin < chunks && result == EXR_ERR_SUCCESS; k.begin = k.end) {
@@ -184,7 +192,8 @@ static float *decoded(const struct sr_image *image)
     return floats;
 }
 
-sr_status sr_exr_encode(const struct sr_image *image, const struct sr_image_write_options *options, struct sr_array *out, struct sr_error *error)
+sr_status sr_exr_encode(const struct sr_image *image, const struct sr_image_write_options *options,
+                        struct sr_array *out, struct sr_error *error)
 {
     (void)options;
     if ((uint64_t)image->width * image->channel_count * 4 > INT32_MAX || image->channel_count > INT16_MAX)

@@ -30,7 +30,8 @@ bool sr_image_put(struct sr_array *out, const void *bytes, size_t size)
     return true;
 }
 
-static sr_status decode_by(const struct sr_image_codec *codec, struct sr_image_source *source, struct sr_image **image, struct sr_error *error)
+static sr_status decode_by(const struct sr_image_codec *codec, struct sr_image_source *source, struct sr_image **image,
+                           struct sr_error *error)
 {
     sr_status status = codec->decode(source, image, error);
     if (status != SR_OK || !sr_image_is_trial(source, *image))

@@ -43,8 +43,9 @@ static bool pixel_bytes(uint64_t width, uint64_t height, uint32_t channel_count,
 }
 
 /* With memory for so many of its rows. */
-static sr_status create(uint32_t width, uint32_t height, uint32_t rows, uint32_t channel_count, const char *const *names,
-                        enum sr_image_type type, struct sr_image **image, struct sr_error *error)
+static sr_status create(uint32_t width, uint32_t height, uint32_t rows, uint32_t channel_count,
+                        const char *const *names, enum sr_image_type type, struct sr_image **image,
+                        struct sr_error *error)
 {
     *image = NULL;
     if (width == 0 || height == 0 || channel_count == 0 || width > MAX_SIDE || height > MAX_SIDE ||
@@ -107,14 +108,16 @@ sr_status sr_image_create_for(const struct sr_image_source *source, uint64_t wid
     if (width == 0 || height == 0 || width > MAX_SIDE || height > MAX_SIDE)
         return sr_fail(error, SR_ERROR_INPUT, "%s: tells a size of %llu x %llu pixels, sides of 1 to %d were expected",
                        source->label, (unsigned long long)width, (unsigned long long)height, (int)MAX_SIDE);
-    if (!pixel_bytes(width, height, channel_count, type, &size) || size > sr_image_limit_B(source->size) || size / height > free_B(source))
+    if (!pixel_bytes(width, height, channel_count, type, &size) || size > sr_image_limit_B(source->size) ||
+        size / height > free_B(source))
         return sr_fail(error, SR_ERROR_INPUT,
                        "%s: tells a size of %llu x %llu pixels with %u channels, which its %zu bytes cannot hold",
                        source->label, (unsigned long long)width, (unsigned long long)height, channel_count,
                        source->size);
     struct sr_error why = {0};
     bool is_trial = !source->is_proven && size > free_B(source);
-    sr_status status = create((uint32_t)width, (uint32_t)height, is_trial ? 1 : (uint32_t)height, channel_count, names, type, image, &why);
+    sr_status status = create((uint32_t)width, (uint32_t)height, is_trial ? 1 : (uint32_t)height, channel_count, names,
+                              type, image, &why);
     if (status == SR_OK)
         (*image)->encoding = source->encoding;
     return status == SR_OK ? status : sr_fail(error, status, "%s: %s", source->label, why.text);

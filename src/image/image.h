@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Pixels with named channels and units: EXR, PFM, PNG, HDR, JPEG, QOI and TGA files, comparison, statistics, tone mapping.
+/* Pixels with named channels and units: EXR, PFM, PNG, HDR, JPEG, QOI and TGA files, comparison, statistics, tone
+ * mapping.
  *
  * The top row comes first; pixel (x, y) covers [x, x+1) × [y, y+1) of the image plane. An image owns everything
  * that it points to. Images do not change behind anyone's back: whoever reads one on several threads needs no
@@ -63,8 +64,8 @@ void sr_image_set_unit(struct sr_image *image, uint32_t channel, const char *uni
  * colour. */
 bool sr_image_find_rgb(const struct sr_image *image, int rgb[3]);
 
-/* Luminance is the sum of weight times channel: of R, G, B by their primaries, of X, Y, Z, of Y, or of the only channel.
- * False: the picture has no colour. */
+/* Luminance is the sum of weight times channel: of R, G, B by their primaries, of X, Y, Z, of Y, or of the only
+ * channel. False: the picture has no colour. */
 bool sr_image_luminance_weights(const struct sr_image *image, int channel[3], double weight[3]);
 
 static inline size_t sr_image_index(const struct sr_image *image, uint32_t x, uint32_t y)
@@ -90,9 +91,9 @@ sr_status sr_image_to_float(struct sr_image *image, struct sr_error *error);
  *   PFM   floats, both byte orders.                   HDR  RGBE and XYZE (converted), all run lengths; rows, not
  *         columns. EXPOSURE is divided out, a PFM scale is multiplied in.
  *   QOI   RGB and RGBA bytes.
- * Headers may lie, so memory follows the bytes of the file: up to 64 MiB + 16 times its size are taken at once. An image that
- * needs more, as honest ones of few colours do, is unpacked twice: first a row at a time, to see that all its pixels are there,
- * and then for good. Beyond sr_image_limit_B it is refused. */
+ * Headers may lie, so memory follows the bytes of the file: up to 64 MiB + 16 times its size are taken at once. An
+ * image that needs more, as honest ones of few colours do, is unpacked twice: first a row at a time, to see that all
+ * its pixels are there, and then for good. Beyond sr_image_limit_B it is refused. */
 sr_status sr_image_read(const char *path, struct sr_image **image, struct sr_error *error);
 /* The same, where the caller knows what whole numbers in the file mean (normal maps and roughness are linear). */
 size_t sr_image_limit_B(size_t file_B); // [B] that the pixels of a file of that size may take: 256 MiB + 2000 file_B

@@ -66,8 +66,10 @@ static sr_status decode(const struct sr_image_source *source, struct sr_image **
                        "%s: the PFM header is damaged: width, height and a scale that is not 0 were expected",
                        source->label);
     if (height > (source->size - at) / 4 / channels / width)
-        return sr_fail(error, SR_ERROR_INPUT, "%s: is cut short: %zu bytes of pixels, %llu x %llu pixels of %u bytes were expected",
-                       source->label, source->size - at, (unsigned long long)width, (unsigned long long)height, 4 * channels);
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "%s: is cut short: %zu bytes of pixels, %llu x %llu pixels of %u bytes were expected",
+                       source->label, source->size - at, (unsigned long long)width, (unsigned long long)height,
+                       4 * channels);
     sr_status status = sr_image_create_for(source, width, height, channels, NULL, SR_IMAGE_FLOATS, image, error);
     if (status != SR_OK)
         return status;

@@ -46,7 +46,8 @@ static png_voidp allocate(png_structp png, png_alloc_size_t size)
     void *p = sr_alloc(size);
     struct job *job = png_get_error_ptr(png);
     if (!p && job && job->status == SR_OK) // the library may not say it so
-        job->status = sr_fail(job->error, SR_ERROR_RESOURCE, "%s: not enough memory", job->source ? job->source->label : "PNG");
+        job->status =
+            sr_fail(job->error, SR_ERROR_RESOURCE, "%s: not enough memory", job->source ? job->source->label : "PNG");
     return p;
 }
 

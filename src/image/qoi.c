@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* QOI, read: bytes of RGB or RGBA, as differences to the pixel before and look-backs to the last 64 colours.
  *
- * "The Quite OK Image Format, Specification 1.0" (D. Szablewski, 2022). Limits: not written; the end marker is not asked for. */
+ * "The Quite OK Image Format, Specification 1.0" (D. Szablewski, 2022). Limits: not written; the end marker is not
+ * asked for. */
 #include "image/codec.h"
 
 #include <string.h>

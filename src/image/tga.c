@@ -93,7 +93,8 @@ static const char *unpack(const struct sr_image_source *source, size_t at, const
         uint32_t x = (uint32_t)(i % h->width), y = (uint32_t)(i / h->width);
         x = h->is_right_to_left ? h->width - 1 - x : x;
         y = h->is_bottom_up ? h->height - 1 - y : y;
-        if (!put_pixel(h, palette, source->data + at, (uint8_t *)sr_image_row(source, image, y) + (size_t)x * h->channels))
+        if (!put_pixel(h, palette, source->data + at,
+                       (uint8_t *)sr_image_row(source, image, y) + (size_t)x * h->channels))
             return "names a colour that is not in its palette";
         run -= h->is_packed;
         // a repeated pixel is passed when its run ends

@@ -75,10 +75,12 @@ static sr_status read_back(const char *path, const struct sr_print *out, struct 
     return status;
 }
 
-sr_status sr_convert(const char *path, const struct sr_convert_options *o, char **text, size_t *size, struct sr_log *log, struct sr_error *error)
+sr_status sr_convert(const char *path, const struct sr_convert_options *o, char **text, size_t *size,
+                     struct sr_log *log, struct sr_error *error)
 {
     struct sr_print out = {0};
-    sr_status status = sr_import_format_of(path) ? sr_pbrt_write(path, o, &out, log, error) : sr_pbrt_format(path, o, &out, log, error);
+    sr_status status = sr_import_format_of(path) ? sr_pbrt_write(path, o, &out, log, error)
+                                                 : sr_pbrt_format(path, o, &out, log, error);
     if (status == SR_OK && out.has_failed)
         status = sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", path);
     if (status == SR_OK)

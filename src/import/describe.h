@@ -15,8 +15,9 @@ struct sr_import_format {
 /* NULL: pbrt's format, which is what all other names are taken for. */
 const struct sr_import_format *sr_import_format_of(const char *path);
 
-/* data must outlive what is made of the description. The description is valid (and must be freed) also after a failure. */
-sr_status sr_describe(const char *path, const struct sr_import_options *options, struct sr_arena *data, struct sr_log *log,
-                      struct sr_pbrt_description *out, struct sr_error *error);
+/* data must outlive what is made of the description. The description is valid (and must be freed) also after a failure.
+ */
+sr_status sr_describe(const char *path, const struct sr_import_options *options, struct sr_arena *data,
+                      struct sr_log *log, struct sr_pbrt_description *out, struct sr_error *error);
 
 #endif

@@ -44,8 +44,8 @@ static sr_status describe(struct sr_pbrt_build *b, enum sr_light_choice *choice)
     return status;
 }
 
-/* Whether the scene is so far from the origin that floats tell: FAR times its size. Then *origin is moved to near its middle, by a
- * round number. */
+/* Whether the scene is so far from the origin that floats tell: FAR times its size. Then *origin is moved to near its
+ * middle, by a round number. */
 static bool is_far(struct sr_box box, double origin[3])
 {
     enum { FAR = 64 };
@@ -64,11 +64,13 @@ static bool is_far(struct sr_box box, double origin[3])
 
 static void tell_far(const char *path, const double o[3], struct sr_box box, struct sr_log *log)
 {
-    double distance = fmax(fabs(o[0]), fmax(fabs(o[1]), fabs(o[2]))), size = (double)sr_max_component(sr_box_diagonal(box)), step = distance * 0x1p-23;
-    sr_log(log, step > 1e-3 * size ? SR_WARNING : SR_INFO,
-           "%s: the scene is %.3g m large and stands at (%g, %g, %g) m: it is computed about there. What transforms place keeps its place; coordinates "
-           "written out in shapes and meters are known to %.2g m",
-           path, size, o[0], o[1], o[2], step);
+    double distance = fmax(fabs(o[0]), fmax(fabs(o[1]), fabs(o[2]))),
+           size = (double)sr_max_component(sr_box_diagonal(box)), step = distance * 0x1p-23;
+    sr_log(
+        log, step > 1e-3 * size ? SR_WARNING : SR_INFO,
+        "%s: the scene is %.3g m large and stands at (%g, %g, %g) m: it is computed about there. What transforms place keeps its place; coordinates "
+        "written out in shapes and meters are known to %.2g m",
+        path, size, o[0], o[1], o[2], step);
 }
 
 static sr_status import(const char *path, const struct sr_import_options *options, struct sr_import_result *result,
@@ -133,10 +135,12 @@ sr_status sr_import_pbrt(const char *path, const struct sr_import_options *optio
     return status;
 }
 
-char *sr_import_identity(struct sr_arena *arena, const struct sr_import_options *options, const struct sr_import_result *result)
+char *sr_import_identity(struct sr_arena *arena, const struct sr_import_options *options,
+                         const struct sr_import_result *result)
 {
-    return sr_arena_printf(arena, "hash %016llx\nunits %s\ncamera %s\nvariant %s\nshifted %u %.9g\n", (unsigned long long)result->hash,
-                           result->units == SR_UNITS_SI ? "si" : "photometric", options->camera ? options->camera : "of the scene",
+    return sr_arena_printf(arena, "hash %016llx\nunits %s\ncamera %s\nvariant %s\nshifted %u %.9g\n",
+                           (unsigned long long)result->hash, result->units == SR_UNITS_SI ? "si" : "photometric",
+                           options->camera ? options->camera : "of the scene",
                            options->variant ? options->variant : "of the scene", options->shifted, options->shift);
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Words and files into scenes: pbrt-v4 files and the meshes and images that they name; glTF and others by their endings. */
+/* Words and files into scenes: pbrt-v4 files and the meshes and images that they name; glTF and others by their
+ * endings. */
 #ifndef SR_IMPORT_IMPORT_H
 #define SR_IMPORT_IMPORT_H
 
@@ -9,8 +10,8 @@
 #include "scene/scene.h"
 #include "sensor/sensor.h"
 
-/* What the numbers of emission spectra mean: shapes alone, scaled to luminance 1 as in pbrt; or W m^-2 sr^-1 nm^-1 as they stand
- * (docs/units.md). */
+/* What the numbers of emission spectra mean: shapes alone, scaled to luminance 1 as in pbrt; or W m^-2 sr^-1 nm^-1 as
+ * they stand (docs/units.md). */
 enum sr_units { SR_UNITS_OF_SCENE, SR_UNITS_PHOTOMETRIC, SR_UNITS_SI };
 
 /* What the caller wants otherwise than the file says; zero members leave the file's word. */
@@ -33,9 +34,9 @@ struct sr_import_options {
 
 /* A standard uncertainty that the file declares of one of its numbers: "#@ Uncertainty" (docs/guide/budget.md). */
 struct sr_declared_uncertainty {
-    const char *name;     // of what is uncertain
-    double value, u;      // in the unit of the parameter; of a spectrum or rgb the first number
-    bool is_rectangular;  // given as half the width of a rectangle: u = a / sqrt(3); else normal
+    const char *name;    // of what is uncertain
+    double value, u;     // in the unit of the parameter; of a spectrum or rgb the first number
+    bool is_rectangular; // given as half the width of a rectangle: u = a / sqrt(3); else normal
 };
 
 /* Everything that a render needs; owned by the scene's arena but for the scene itself. */
@@ -49,7 +50,7 @@ struct sr_import_result {
     enum sr_sampler_kind sampler;
     uint32_t spp, seed;
     bool jitter_pixel, jitter_lambda;
-    enum sr_units units; // SR_UNITS_PHOTOMETRIC or SR_UNITS_SI
+    enum sr_units units;           // SR_UNITS_PHOTOMETRIC or SR_UNITS_SI
     const struct sr_meter *meters; // of the file, in its order; each has a name
     uint32_t meter_count;
     const struct sr_declared_uncertainty *uncertainties;
@@ -59,30 +60,32 @@ struct sr_import_result {
     double read_s; // [s] reading and describing, without building
 };
 
-/* Reads a scene of any format (describe.h) and finishes it. path "-" is standard input, pbrt's. On failure the result is empty and the error says what, where
- * (file:line:column) and what was expected. */
+/* Reads a scene of any format (describe.h) and finishes it. path "-" is standard input, pbrt's. On failure the result
+ * is empty and the error says what, where (file:line:column) and what was expected. */
 sr_status sr_import_pbrt(const char *path, const struct sr_import_options *options, struct sr_import_result *result,
                          struct sr_log *log, struct sr_error *error);
 void sr_import_result_free(struct sr_import_result *result);
-/* What of a scene makes a picture's bytes, as lines "key value": the hash, and options that change what the bytes mean. NULL: no
- * memory. */
-char *sr_import_identity(struct sr_arena *arena, const struct sr_import_options *options, const struct sr_import_result *result);
+/* What of a scene makes a picture's bytes, as lines "key value": the hash, and options that change what the bytes mean.
+ * NULL: no memory. */
+char *sr_import_identity(struct sr_arena *arena, const struct sr_import_options *options,
+                         const struct sr_import_result *result);
 
 /* ---- scenes as text ---- */
 
 struct sr_convert_options {
-    const char *out;      // where the text will lie, for the names of files in it; "-": in the current folder
-    bool upgrades;        // from pbrt-v3
-    bool flattens;        // text of included files takes the place of Include and Import
-    uint32_t ply_above;   // triangle meshes of more vertices become PLY files beside the text; 0: none does
-    bool for_steradian;   // materials and textures that pbrt does not know stay as they are; else the nearest that it knows
+    const char *out;    // where the text will lie, for the names of files in it; "-": in the current folder
+    bool upgrades;      // from pbrt-v3
+    bool flattens;      // text of included files takes the place of Include and Import
+    uint32_t ply_above; // triangle meshes of more vertices become PLY files beside the text; 0: none does
+    bool for_steradian; // materials and textures that pbrt does not know stay as they are; else the nearest that it
+                        // knows
 };
 /* A scene of any format as pbrt-v4 text, which is read back before it is given. Free *text with sr_free. */
-sr_status sr_convert(const char *path, const struct sr_convert_options *options, char **text, size_t *size, struct sr_log *log,
-                     struct sr_error *error);
+sr_status sr_convert(const char *path, const struct sr_convert_options *options, char **text, size_t *size,
+                     struct sr_log *log, struct sr_error *error);
 
-/* One material of a scene, without the rest: by the name of its MakeNamedMaterial, or "#2" for the second Material directive.
- * NULL in *out: an interface. Everything is kept in the arena. */
+/* One material of a scene, without the rest: by the name of its MakeNamedMaterial, or "#2" for the second Material
+ * directive. NULL in *out: an interface. Everything is kept in the arena. */
 sr_status sr_import_pbrt_material(const char *path, const char *name, struct sr_arena *arena,
                                   const struct sr_material **out, struct sr_log *log, struct sr_error *error);
 

@@ -3,9 +3,9 @@
  *
  *     value = m 10^e,   m < 10^19
  *
- * Exact up to one rounding where m <= 2^53 and |e| <= 22 (Clinger 1990), within 2 ulp of a double elsewhere, so that the nearest
- * float is missed only where the decimal lies within 1e-8 of an ulp of the middle between two. Digits beyond the 19th are
- * dropped. The text must be followed by a NUL. Knows no locale. */
+ * Exact up to one rounding where m <= 2^53 and |e| <= 22 (Clinger 1990), within 2 ulp of a double elsewhere, so that
+ * the nearest float is missed only where the decimal lies within 1e-8 of an ulp of the middle between two. Digits
+ * beyond the 19th are dropped. The text must be followed by a NUL. Knows no locale. */
 #ifndef SR_IMPORT_NUMBER_H
 #define SR_IMPORT_NUMBER_H
 

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Wavefront OBJ: vertices, faces of any number of corners, groups, materials. The text is gone through twice: to count, and to
- * read into arrays of the right size. One triangle mesh for each group and material; corners that agree in position, texture
- * coordinates and normal are one vertex.
+/* Wavefront OBJ: vertices, faces of any number of corners, groups, materials. The text is gone through twice: to count,
+ * and to read into arrays of the right size. One triangle mesh for each group and material; corners that agree in
+ * position, texture coordinates and normal are one vertex.
  *
- * Format: Wavefront Technologies, Advanced Visualizer manual, appendix B1 (1995). Curves, surfaces, points, lines: left out. */
+ * Format: Wavefront Technologies, Advanced Visualizer manual, appendix B1 (1995). Curves, surfaces, points, lines: left
+ * out. */
 #include "import/obj.h"
 
 #include "import/framing.h"
@@ -110,12 +111,14 @@ static void count(struct obj *o, const char *text)
         vn += sr_obj_is_word(p, "vn");
         if (sr_obj_is_word(p, "f") || sr_obj_is_word(p, "fo")) {
             ++f;
-            for (p = sr_obj_skip(p + sr_obj_word_length(p)); *p && *p != '\n'; p = sr_obj_skip(p + sr_obj_word_length(p)))
+            for (p = sr_obj_skip(p + sr_obj_word_length(p)); *p && *p != '\n';
+                 p = sr_obj_skip(p + sr_obj_word_length(p)))
                 ++corners;
         }
     }
     if (v > INT32_MAX / 4 || corners > INT32_MAX / 4) {
-        sr_compose_fail(&o->c, SR_ERROR_INPUT, "%llu vertices and %llu corners of faces: expected less than 2^29", (unsigned long long)v, (unsigned long long)corners);
+        sr_compose_fail(&o->c, SR_ERROR_INPUT, "%llu vertices and %llu corners of faces: expected less than 2^29",
+                        (unsigned long long)v, (unsigned long long)corners);
         return;
     }
     o->v_count = (uint32_t)v;
@@ -158,7 +161,8 @@ static bool read_vector(struct obj *o, const char *p, const char *word, int leas
 }
 
 /* One number of "7/2/-1": from 1, or backwards from those read so far. */
-static const char *read_index(struct obj *o, const char *p, const char *what, uint32_t so_far, uint32_t all, int32_t *index)
+static const char *read_index(struct obj *o, const char *p, const char *what, uint32_t so_far, uint32_t all,
+                              int32_t *index)
 {
     bool is_negative = *p == '-';
     int64_t n = 0;
@@ -168,7 +172,8 @@ static const char *read_index(struct obj *o, const char *p, const char *what, ui
         n = n < INT32_MAX ? n * 10 + (*p - '0') : n;
     n = is_negative ? (int64_t)so_far - n : n - 1;
     if (p == start || n < 0 || n >= (int64_t)all) {
-        sr_compose_fail(&o->c, SR_ERROR_INPUT, "f: %.*s is no %s: expected 1 to %u, or -1 to -%u", (int)(length > 40 ? 40 : length), word, what, (unsigned)all, (unsigned)so_far);
+        sr_compose_fail(&o->c, SR_ERROR_INPUT, "f: %.*s is no %s: expected 1 to %u, or -1 to -%u",
+                        (int)(length > 40 ? 40 : length), word, what, (unsigned)all, (unsigned)so_far);
         return NULL;
     }
     *index = (int32_t)n;
@@ -261,7 +266,8 @@ static void read_materials(struct obj *o, const char *p)
     sr_obj_materials_read(&o->c, path, &o->materials);
     o->c.where = where;
     for (size_t i = before; i < o->materials.count; ++i) // a later one of the same name takes its place
-        if (!sr_pbrt_names_add(&o->material_names, SR_PBRT_AT(o->materials, struct sr_obj_material, i)->name, (uint32_t)i + 1))
+        if (!sr_pbrt_names_add(&o->material_names, SR_PBRT_AT(o->materials, struct sr_obj_material, i)->name,
+                               (uint32_t)i + 1))
             no_memory(o);
 }
 
@@ -294,7 +300,8 @@ static void read_line(struct obj *o, const char *p)
 
 static uint32_t hash_of(const int32_t k[3])
 {
-    uint64_t h = (uint64_t)(uint32_t)k[0] * 0x9e3779b97f4a7c15u ^ (uint64_t)(uint32_t)k[1] * 0xc2b2ae3d27d4eb4fu ^ (uint64_t)(uint32_t)k[2] * 0x165667b19e3779f9u;
+    uint64_t h = (uint64_t)(uint32_t)k[0] * 0x9e3779b97f4a7c15u ^ (uint64_t)(uint32_t)k[1] * 0xc2b2ae3d27d4eb4fu ^
+                 (uint64_t)(uint32_t)k[2] * 0x165667b19e3779f9u;
     return (uint32_t)(h >> 32);
 }
 
@@ -347,7 +354,8 @@ static void compose_part(struct obj *o, const struct part *part, const int32_t *
         has_normals = has_normals && unique[i][2] >= 0;
         has_uv = has_uv || unique[i][1] >= 0;
     }
-    float *P = sr_arena_alloc(&o->c.d->words, n * 12 + 16), *N = has_normals ? sr_arena_alloc(&o->c.d->words, n * 12 + 16) : NULL,
+    float *P = sr_arena_alloc(&o->c.d->words, n * 12 + 16),
+          *N = has_normals ? sr_arena_alloc(&o->c.d->words, n * 12 + 16) : NULL,
           *uv = has_uv ? sr_arena_alloc(o->c.d->data, n * 8 + 16) : NULL;
     if (!P || (has_normals && !N) || (has_uv && !uv)) {
         no_memory(o);
@@ -361,14 +369,16 @@ static void compose_part(struct obj *o, const struct part *part, const int32_t *
         if (uv && unique[i][1] >= 0)
             memcpy(uv + 2 * i, &o->vt[unique[i][1]], 8);
     }
-    struct sr_obj_material *m = part->material1 ? SR_PBRT_AT(o->materials, struct sr_obj_material, part->material1 - 1) : NULL;
+    struct sr_obj_material *m =
+        part->material1 ? SR_PBRT_AT(o->materials, struct sr_obj_material, part->material1 - 1) : NULL;
     o->c.material = NULL;
     o->c.area_light1 = 0;
     if (m) {
         sr_obj_material_wear(&o->c, m);
         sr_obj_material_alpha(&o->c, m);
         if (m->is_textured && !has_uv)
-            sr_compose_warn(&o->c, "\"%.100s\" wears \"%.100s\", which has textures, and has no texture coordinates", part->group, m->name);
+            sr_compose_warn(&o->c, "\"%.100s\" wears \"%.100s\", which has textures, and has no texture coordinates",
+                            part->group, m->name);
     }
     sr_compose_floats(&o->c, SR_PBRT_POINT3, "P", P, 3 * n);
     if (N)
@@ -380,7 +390,8 @@ static void compose_part(struct obj *o, const struct part *part, const int32_t *
 }
 
 /* faces: of this part, in the order of the file */
-static void build_part(struct obj *o, const struct part *part, const uint32_t *faces, uint32_t *triangles, uint32_t *vertex, bool *has_fans)
+static void build_part(struct obj *o, const struct part *part, const uint32_t *faces, uint32_t *triangles,
+                       uint32_t *vertex, bool *has_fans)
 {
     size_t index_count = 3 * ((size_t)part->corners - 2 * (size_t)part->faces), at = 0;
     int32_t *indices = sr_arena_alloc(o->c.d->data, index_count * sizeof *indices + 16);
@@ -411,8 +422,10 @@ static void build(struct obj *o)
     o->face_start[o->faces] = o->corners;
     for (uint32_t f = 0; f < o->faces; ++f)
         largest = o->face_start[f + 1] - o->face_start[f] > largest ? o->face_start[f + 1] - o->face_start[f] : largest;
-    uint32_t *order = sr_arena_alloc(&o->scratch, (o->faces + 1) * sizeof *order), *start = sr_arena_alloc(&o->scratch, (parts + 1) * sizeof *start),
-             *triangles = sr_arena_alloc(&o->scratch, 3 * (size_t)largest * sizeof *triangles), *vertex = sr_arena_alloc(&o->scratch, largest * sizeof *vertex);
+    uint32_t *order = sr_arena_alloc(&o->scratch, (o->faces + 1) * sizeof *order),
+             *start = sr_arena_alloc(&o->scratch, (parts + 1) * sizeof *start),
+             *triangles = sr_arena_alloc(&o->scratch, 3 * (size_t)largest * sizeof *triangles),
+             *vertex = sr_arena_alloc(&o->scratch, largest * sizeof *vertex);
     if (!order || !start || !triangles || !vertex) {
         no_memory(o);
         return;
@@ -429,7 +442,9 @@ static void build(struct obj *o)
         first += part->faces;
     }
     if (has_fans)
-        sr_compose_warn(&o->c, "some polygons cross themselves, or are too large to be cut properly: they became fans of triangles");
+        sr_compose_warn(
+            &o->c,
+            "some polygons cross themselves, or are too large to be cut properly: they became fans of triangles");
     if (o->dropped)
         sr_compose_warn(&o->c, "%u faces of fewer than three corners are left out", (unsigned)o->dropped);
 }
@@ -466,8 +481,9 @@ static void read_all(struct obj *o, const char *text, const struct sr_import_opt
     sr_compose_setting(&o->c, "Integrator", "path");
 }
 
-sr_status sr_obj_read_text(const char *label, const char *text, size_t size, const struct sr_import_options *options, struct sr_arena *data,
-                           struct sr_log *log, struct sr_pbrt_description *out, struct sr_error *error)
+sr_status sr_obj_read_text(const char *label, const char *text, size_t size, const struct sr_import_options *options,
+                           struct sr_arena *data, struct sr_log *log, struct sr_pbrt_description *out,
+                           struct sr_error *error)
 {
     struct obj o = {.group = "", .budget = 200 * 1000 * 1000, .bounds = sr_box_empty()};
     sr_compose_begin(&o.c, label, data, log, out, error);
@@ -487,8 +503,8 @@ sr_status sr_obj_read_text(const char *label, const char *text, size_t size, con
     return sr_compose_end(&o.c);
 }
 
-sr_status sr_obj_read(const char *path, const struct sr_import_options *options, struct sr_arena *data, struct sr_log *log,
-                      struct sr_pbrt_description *out, struct sr_error *error)
+sr_status sr_obj_read(const char *path, const struct sr_import_options *options, struct sr_arena *data,
+                      struct sr_log *log, struct sr_pbrt_description *out, struct sr_error *error)
 {
     char *text;
     size_t size;

@@ -6,17 +6,19 @@
 #include "import/describe.h"
 #include "import/pbrt/compose.h"
 
-sr_status sr_obj_read(const char *path, const struct sr_import_options *options, struct sr_arena *data, struct sr_log *log,
-                      struct sr_pbrt_description *out, struct sr_error *error);
-sr_status sr_stl_read(const char *path, const struct sr_import_options *options, struct sr_arena *data, struct sr_log *log,
-                      struct sr_pbrt_description *out, struct sr_error *error);
-sr_status sr_ply_scene_read(const char *path, const struct sr_import_options *options, struct sr_arena *data, struct sr_log *log,
-                            struct sr_pbrt_description *out, struct sr_error *error);
-/* From memory; text[size] must be NUL. label stands for the path, beside which materials are looked for. */
-sr_status sr_obj_read_text(const char *label, const char *text, size_t size, const struct sr_import_options *options, struct sr_arena *data,
-                           struct sr_log *log, struct sr_pbrt_description *out, struct sr_error *error);
-sr_status sr_stl_read_bytes(const char *label, const char *bytes, size_t size, const struct sr_import_options *options, struct sr_arena *data,
+sr_status sr_obj_read(const char *path, const struct sr_import_options *options, struct sr_arena *data,
+                      struct sr_log *log, struct sr_pbrt_description *out, struct sr_error *error);
+sr_status sr_stl_read(const char *path, const struct sr_import_options *options, struct sr_arena *data,
+                      struct sr_log *log, struct sr_pbrt_description *out, struct sr_error *error);
+sr_status sr_ply_scene_read(const char *path, const struct sr_import_options *options, struct sr_arena *data,
                             struct sr_log *log, struct sr_pbrt_description *out, struct sr_error *error);
+/* From memory; text[size] must be NUL. label stands for the path, beside which materials are looked for. */
+sr_status sr_obj_read_text(const char *label, const char *text, size_t size, const struct sr_import_options *options,
+                           struct sr_arena *data, struct sr_log *log, struct sr_pbrt_description *out,
+                           struct sr_error *error);
+sr_status sr_stl_read_bytes(const char *label, const char *bytes, size_t size, const struct sr_import_options *options,
+                            struct sr_arena *data, struct sr_log *log, struct sr_pbrt_description *out,
+                            struct sr_error *error);
 
 /* ---- lines of words: both files of OBJ ---- */
 

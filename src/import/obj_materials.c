@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Materials of OBJ files (MTL), as the nearest of ours.
  *
- * Phong's exponent Ns stands for slopes of width alpha = sqrt(2 / (Ns + 2)) [1] (Walter et al. 2007, 5.2); our roughness is
- * sqrt(alpha). Pr, Pm and norm are the widespread extension for physically based materials. d and Tr are how much is there, not
- * glass; glass is "illum" 4, 6, 7 or 9. Ke is radiance; of what unit the format does not say, and it is taken as cd/m^2. */
+ * Phong's exponent Ns stands for slopes of width alpha = sqrt(2 / (Ns + 2)) [1] (Walter et al. 2007, 5.2); our
+ * roughness is sqrt(alpha). Pr, Pm and norm are the widespread extension for physically based materials. d and Tr are
+ * how much is there, not glass; glass is "illum" 4, 6, 7 or 9. Ke is radiance; of what unit the format does not say,
+ * and it is taken as cd/m^2. */
 #include "import/obj.h"
 
 #include <stdio.h>
@@ -39,8 +40,10 @@ static void read_map(struct sr_compose *c, const char *p, struct sr_obj_map *map
         const char *word;
         int words; // that follow at most, numbers but for the last kind
         bool are_numbers;
-    } options[] = {{"-s", 3, true},       {"-o", 3, true},        {"-t", 3, true},      {"-mm", 2, true},       {"-bm", 1, true},   {"-boost", 1, true},
-                   {"-texres", 1, true},  {"-clamp", 1, false},   {"-blendu", 1, false}, {"-blendv", 1, false}, {"-cc", 1, false}, {"-imfchan", 1, false}, {"-type", 1, false}};
+    } options[] = {{"-s", 3, true},       {"-o", 3, true},       {"-t", 3, true},      {"-mm", 2, true},
+                   {"-bm", 1, true},      {"-boost", 1, true},   {"-texres", 1, true}, {"-clamp", 1, false},
+                   {"-blendu", 1, false}, {"-blendv", 1, false}, {"-cc", 1, false},    {"-imfchan", 1, false},
+                   {"-type", 1, false}};
     *map = (struct sr_obj_map){.scale = {1, 1}, .bump = 1};
     for (bool again = true; again && *(p = sr_obj_skip(p)) == '-';) {
         again = false;
@@ -82,8 +85,10 @@ static void read_line(struct sr_compose *c, const char *p, struct sr_obj_materia
     const struct {
         const char *word;
         struct sr_obj_map *map;
-    } maps[] = {{"map_Kd", &m->map_Kd},     {"map_Ks", &m->map_Ks},     {"map_Ke", &m->map_Ke},   {"map_d", &m->map_d},   {"map_bump", &m->map_bump},
-                {"bump", &m->map_bump},     {"norm", &m->map_normal},   {"map_Kn", &m->map_normal}, {"map_Pr", &m->map_Pr}, {"map_Pm", &m->map_Pm}};
+    } maps[] = {{"map_Kd", &m->map_Kd},   {"map_Ks", &m->map_Ks},     {"map_Ke", &m->map_Ke},
+                {"map_d", &m->map_d},     {"map_bump", &m->map_bump}, {"bump", &m->map_bump},
+                {"norm", &m->map_normal}, {"map_Kn", &m->map_normal}, {"map_Pr", &m->map_Pr},
+                {"map_Pm", &m->map_Pm}};
     const char *rest = sr_obj_skip(p + sr_obj_word_length(p));
     for (size_t i = 0; i < sizeof colours / sizeof *colours; ++i)
         if (sr_obj_is_word(p, colours[i].word)) {
@@ -129,7 +134,15 @@ static void read_text(struct sr_compose *c, const char *text, struct sr_array *m
                 sr_fail(c->error, SR_ERROR_RESOURCE, "%s: not enough memory", c->path);
                 return;
             }
-            *m = (struct sr_obj_material){.where = c->where, .Kd = {0.8f, 0.8f, 0.8f}, .Tf = {1, 1, 1}, .Ns = 0, .Ni = 1.5f, .d = 1, .Pr = -1, .Pm = -1, .illum = -1};
+            *m = (struct sr_obj_material){.where = c->where,
+                                          .Kd = {0.8f, 0.8f, 0.8f},
+                                          .Tf = {1, 1, 1},
+                                          .Ns = 0,
+                                          .Ni = 1.5f,
+                                          .d = 1,
+                                          .Pr = -1,
+                                          .Pm = -1,
+                                          .illum = -1};
             if (!(m->name = sr_pbrt_text(c->d, name, n)))
                 m->name = "";
         } else if (m)
@@ -171,7 +184,8 @@ static struct sr_rgb clamp(struct sr_rgb c)
 }
 
 /* An image as a texture; its name, or NULL where the file is not there. */
-static const char *compose_map(struct sr_compose *c, struct sr_obj_material *m, const struct sr_obj_map *map, const char *what, bool is_float, float scale)
+static const char *compose_map(struct sr_compose *c, struct sr_obj_material *m, const struct sr_obj_map *map,
+                               const char *what, bool is_float, float scale)
 {
     char *path = map->path ? sr_path_beside(&c->d->words, m->where.file, map->path) : NULL;
     if (!path || !sr_file_exists(path)) {
@@ -284,9 +298,14 @@ void sr_obj_material_wear(struct sr_compose *c, struct sr_obj_material *m)
         while (sr_pbrt_names_find(&c->d->material_names, m->name)) // an earlier material of the same name
             m->name = sr_compose_printf(c, "%.900s'", m->name);
         bool is_glass = m->illum == 4 || m->illum == 6 || m->illum == 7 || m->illum == 9;
-        bool is_metal = (is_black(m->Kd) && !m->map_Kd.path && !is_black(m->Ks) && m->Pm < 0) || (m->illum == 3 && is_black(m->Kd));
-        bool shines = m->Pr >= 0 || m->Pm >= 0 || m->map_Pr.path || m->map_Pm.path || (!is_black(m->Ks) && m->Ns > 0 && m->illum != 0 && m->illum != 1);
-        struct maps maps = {.colour = is_glass || is_metal ? NULL : compose_map(c, m, &m->map_Kd, "map_Kd", false, m->has_Kd && !is_black(m->Kd) ? mean(clamp(m->Kd)) : 1),
+        bool is_metal =
+            (is_black(m->Kd) && !m->map_Kd.path && !is_black(m->Ks) && m->Pm < 0) || (m->illum == 3 && is_black(m->Kd));
+        bool shines = m->Pr >= 0 || m->Pm >= 0 || m->map_Pr.path || m->map_Pm.path ||
+                      (!is_black(m->Ks) && m->Ns > 0 && m->illum != 0 && m->illum != 1);
+        struct maps maps = {.colour = is_glass || is_metal
+                                          ? NULL
+                                          : compose_map(c, m, &m->map_Kd, "map_Kd", false,
+                                                        m->has_Kd && !is_black(m->Kd) ? mean(clamp(m->Kd)) : 1),
                             .bump = compose_map(c, m, &m->map_bump, "bump", true, m->map_bump.bump),
                             .rough = shines ? compose_map(c, m, &m->map_Pr, "map_Pr", true, 1) : NULL,
                             .metal = shines ? compose_map(c, m, &m->map_Pm, "map_Pm", true, 1) : NULL};
@@ -319,7 +338,8 @@ void sr_obj_material_alpha(struct sr_compose *c, const struct sr_obj_material *m
     bool is_glass = m->illum == 4 || m->illum == 6 || m->illum == 7 || m->illum == 9;
     if (is_glass)
         return;
-    if (m->map_d.path && (sr_pbrt_names_find(&c->d->float_textures, name) || compose_map(c, &copy, &m->map_d, "map_d", true, m->d)))
+    if (m->map_d.path &&
+        (sr_pbrt_names_find(&c->d->float_textures, name) || compose_map(c, &copy, &m->map_d, "map_d", true, m->d)))
         sr_compose_texture_name(c, "alpha", name);
     else if (m->d < 1)
         sr_compose_float(c, "alpha", m->d);

@@ -2,8 +2,9 @@
 /* The body of a PLY file: vertices and faces, the rest is skipped.
  *
  * Vertices: x y z, nx ny nz, and u v, s t, texture_u texture_v or texture_s texture_t. Faces: a list vertex_indices (or
- * vertex_index) of any integer type, and face_indices. Binary little-endian files whose faces are all triangles or all quads
- * are copied in strides; everything else goes value by value. No index outside of the vertices ever leaves this file. */
+ * vertex_index) of any integer type, and face_indices. Binary little-endian files whose faces are all triangles or all
+ * quads are copied in strides; everything else goes value by value. No index outside of the vertices ever leaves this
+ * file. */
 #include "import/ply.h"
 
 #include "import/number.h"
@@ -372,7 +373,8 @@ static sr_status read_faces(struct reader *r, const struct sr_ply_element *e, st
         return sr_fail(r->error, SR_ERROR_INPUT, "%s: its faces have no list of whole numbers \"vertex_indices\"",
                        r->label);
     if (e->count > INT32_MAX / 4) // so that numbers of corners are as small
-        return sr_fail(r->error, SR_ERROR_INPUT, "%s: has %llu faces, expected at most %d", r->label, (unsigned long long)e->count, INT32_MAX / 4);
+        return sr_fail(r->error, SR_ERROR_INPUT, "%s: has %llu faces, expected at most %d", r->label,
+                       (unsigned long long)e->count, INT32_MAX / 4);
     if (face_index >= 0 && e->properties[face_index].is_list)
         face_index = -1;
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Ear clipping: a corner is cut off where the triangle with its neighbours turns as the polygon does and holds no other corner.
+/* Ear clipping: a corner is cut off where the triangle with its neighbours turns as the polygon does and holds no other
+ * corner.
  *
- * In the plane of the two axes along which the polygon is largest, by Newell's normal. G. H. Meisters 1975: there are always two
- * ears, if the polygon does not cross itself. */
+ * In the plane of the two axes along which the polygon is largest, by Newell's normal. G. H. Meisters 1975: there are
+ * always two ears, if the polygon does not cross itself. */
 #include "import/polygon.h"
 
 struct flat {
@@ -65,7 +66,8 @@ static void fan(const uint32_t *left, uint32_t n, uint32_t *triangles)
     }
 }
 
-bool sr_polygon_triangulate(const sr_vec3 *P, const int32_t *corners, uint32_t stride, uint32_t count, int64_t *budget, uint32_t *triangles)
+bool sr_polygon_triangulate(const sr_vec3 *P, const int32_t *corners, uint32_t stride, uint32_t count, int64_t *budget,
+                            uint32_t *triangles)
 {
     struct flat q[SR_POLYGON_MOST];
     uint32_t left[SR_POLYGON_MOST], n = count;
@@ -80,7 +82,7 @@ bool sr_polygon_triangulate(const sr_vec3 *P, const int32_t *corners, uint32_t s
     }
     for (uint32_t i = 0; i < n; ++i)
         left[i] = i;
-    for (uint32_t i = 0, passed = 0; n > 3 && passed < n && *budget > 0;) {
+    for (uint32_t i = 0, passed = 0; n > 3 && passed<n && * budget> 0;) {
         i %= n;
         if (!is_ear(q, left, n, i, budget)) {
             ++i;

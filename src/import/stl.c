@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* STL: triangles with nothing else, as text or in 50 bytes each; and PLY files alone. Both are grey, with a camera and a sky.
+/* STL: triangles with nothing else, as text or in 50 bytes each; and PLY files alone. Both are grey, with a camera and
+ * a sky.
  *
- * A binary file is 80 bytes, the number of triangles, and for each a normal, three vertices and two bytes that some use for
- * colour. Normals are left aside: facets have their own. Corners at the same place are one vertex. z is up. */
+ * A binary file is 80 bytes, the number of triangles, and for each a normal, three vertices and two bytes that some use
+ * for colour. Normals are left aside: facets have their own. Corners at the same place are one vertex. z is up. */
 #include "import/framing.h"
 #include "import/number.h"
 #include "import/obj.h"
@@ -35,7 +36,8 @@ static void read_binary(struct stl *s, const char *bytes, uint32_t count)
             uint32_t bits = word_at(bytes + 84 + 50 * (size_t)i + 12 + 4 * k);
             memcpy(to, &bits, 4);
             if (!isfinite(*to)) {
-                sr_compose_fail(&s->c, SR_ERROR_INPUT, "triangle %u has a corner that is nowhere (%g)", (unsigned)i, (double)*to);
+                sr_compose_fail(&s->c, SR_ERROR_INPUT, "triangle %u has a corner that is nowhere (%g)", (unsigned)i,
+                                (double)*to);
                 return;
             }
         }
@@ -62,7 +64,8 @@ static void read_ascii(struct stl *s, const char *text)
     }
     s->c.where.line = 0;
     if (s->c.error->status == SR_OK && s->P.count % 3 != 0)
-        sr_compose_fail(&s->c, SR_ERROR_INPUT, "%zu vertices: expected three for each facet; the file has been cut", s->P.count);
+        sr_compose_fail(&s->c, SR_ERROR_INPUT, "%zu vertices: expected three for each facet; the file has been cut",
+                        s->P.count);
 }
 
 /* Corners to vertices: equal places become one. */
@@ -112,21 +115,24 @@ static void finish(struct sr_compose *c, const struct sr_import_options *options
     sr_compose_setting(c, "Integrator", "path");
 }
 
-sr_status sr_stl_read_bytes(const char *label, const char *bytes, size_t size, const struct sr_import_options *options, struct sr_arena *data,
-                            struct sr_log *log, struct sr_pbrt_description *out, struct sr_error *error)
+sr_status sr_stl_read_bytes(const char *label, const char *bytes, size_t size, const struct sr_import_options *options,
+                            struct sr_arena *data, struct sr_log *log, struct sr_pbrt_description *out,
+                            struct sr_error *error)
 {
     struct stl s = {0};
     struct sr_box bounds = sr_box_empty();
     sr_compose_begin(&s.c, label, data, log, out, error);
     s.c.path = s.c.where.file = sr_compose_word(&s.c, label);
     uint64_t claimed = size >= 84 ? word_at(bytes + 80) : 0;
-    bool is_ascii = size >= 5 && memcmp(bytes, "solid", 5) == 0 && !memchr(bytes, 0, size) && !(size >= 84 && size == 84 + 50 * claimed);
+    bool is_ascii = size >= 5 && memcmp(bytes, "solid", 5) == 0 && !memchr(bytes, 0, size) &&
+                    !(size >= 84 && size == 84 + 50 * claimed);
     if (error->status == SR_OK && is_ascii)
         read_ascii(&s, bytes);
     else if (error->status == SR_OK && size < 84)
         sr_compose_fail(&s.c, SR_ERROR_INPUT, "%zu bytes: expected \"solid\", or 84 bytes and more", size);
     else if (error->status == SR_OK && 84 + 50 * claimed > size)
-        sr_compose_fail(&s.c, SR_ERROR_INPUT, "says that it has %u triangles, %llu bytes, and has %zu bytes", (unsigned)claimed, (unsigned long long)(84 + 50 * claimed), size);
+        sr_compose_fail(&s.c, SR_ERROR_INPUT, "says that it has %u triangles, %llu bytes, and has %zu bytes",
+                        (unsigned)claimed, (unsigned long long)(84 + 50 * claimed), size);
     else if (error->status == SR_OK && claimed > INT32_MAX / 4)
         sr_compose_fail(&s.c, SR_ERROR_INPUT, "%u triangles: expected less than 2^29", (unsigned)claimed);
     else if (error->status == SR_OK)
@@ -142,8 +148,8 @@ sr_status sr_stl_read_bytes(const char *label, const char *bytes, size_t size, c
     return sr_compose_end(&s.c);
 }
 
-sr_status sr_stl_read(const char *path, const struct sr_import_options *options, struct sr_arena *data, struct sr_log *log,
-                      struct sr_pbrt_description *out, struct sr_error *error)
+sr_status sr_stl_read(const char *path, const struct sr_import_options *options, struct sr_arena *data,
+                      struct sr_log *log, struct sr_pbrt_description *out, struct sr_error *error)
 {
     char *bytes;
     size_t size;
@@ -158,8 +164,8 @@ sr_status sr_stl_read(const char *path, const struct sr_import_options *options,
 /* ---- PLY ---- */
 
 /* Read here for its size alone; the scene names the file. */
-sr_status sr_ply_scene_read(const char *path, const struct sr_import_options *options, struct sr_arena *data, struct sr_log *log,
-                            struct sr_pbrt_description *out, struct sr_error *error)
+sr_status sr_ply_scene_read(const char *path, const struct sr_import_options *options, struct sr_arena *data,
+                            struct sr_log *log, struct sr_pbrt_description *out, struct sr_error *error)
 {
     struct sr_compose c;
     struct sr_ply_mesh mesh = {0};

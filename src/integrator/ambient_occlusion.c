@@ -12,12 +12,15 @@ struct ambient_occlusion {
 };
 
 static const struct sr_param params[] = {
-    {SR_PARAM_BOOL, "cossample", "1", 0, 1, 1, offsetof(struct ambient_occlusion, cosine), "cosine-weighted directions"},
-    {SR_PARAM_FLOAT, "maxdistance", "m", 0, INFINITY, INFINITY, offsetof(struct ambient_occlusion, max_distance), "farthest occluder"},
+    {SR_PARAM_BOOL, "cossample", "1", 0, 1, 1, offsetof(struct ambient_occlusion, cosine),
+     "cosine-weighted directions"},
+    {SR_PARAM_FLOAT, "maxdistance", "m", 0, INFINITY, INFINITY, offsetof(struct ambient_occlusion, max_distance),
+     "farthest occluder"},
     {.name = NULL},
 };
 
-static sr_spectrum ambient_occlusion_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
+static sr_spectrum ambient_occlusion_L(const void *self, const struct sr_scene *scene,
+                                       const struct sr_path_start *start, const struct sr_sampler *sampler,
                                        struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
 {
     const struct ambient_occlusion *ao = self;
@@ -41,7 +44,8 @@ static sr_spectrum ambient_occlusion_L(const void *self, const struct sr_scene *
     sr_u4 u = sr_sample4(sampler, SR_USE_BOUNCE);
     sr_vec3 n = sr_face_forward(x.point.n, sr_neg(ray.d));
     struct sr_frame frame = sr_frame_from_zx(n, x.point.dpdu);
-    sr_vec3 wi = ao->cosine ? sr_warp_cosine_hemisphere((sr_vec2){u[0], u[1]}) : sr_warp_uniform_hemisphere((sr_vec2){u[0], u[1]});
+    sr_vec3 wi = ao->cosine ? sr_warp_cosine_hemisphere((sr_vec2){u[0], u[1]})
+                            : sr_warp_uniform_hemisphere((sr_vec2){u[0], u[1]});
     float pdf = ao->cosine ? sr_warp_cosine_hemisphere_pdf(wi.z) : 1 / (2 * SR_PI);
     if (!(pdf > 0))
         return SR_BLACK;
@@ -50,10 +54,15 @@ static sr_spectrum ambient_occlusion_L(const void *self, const struct sr_scene *
     if (!sr_unoccluded(scene, &x.point, &target, worker))
         return SR_BLACK;
     const struct sr_colour_space *srgb = sr_colour_space(SR_SRGB);
-    struct sr_spd white = {.kind = SR_SPD_TABLE, .scale = (float)(1 / srgb->illuminant_luminous_integral), .table = srgb->illuminant};
+    struct sr_spd white = {
+        .kind = SR_SPD_TABLE, .scale = (float)(1 / srgb->illuminant_luminous_integral), .table = srgb->illuminant};
     return sr_spd_eval(&white, w->lambda) * (wi.z / (SR_PI * pdf));
 }
 
 const struct sr_integrator_model sr_integrator_ambient_occlusion = {
-    .name = "ambientocclusion", .text = "how much of the hemisphere is free, cosine-weighted", .params = params, .size = sizeof(struct ambient_occlusion), .L = ambient_occlusion_L,
+    .name = "ambientocclusion",
+    .text = "how much of the hemisphere is free, cosine-weighted",
+    .params = params,
+    .size = sizeof(struct ambient_occlusion),
+    .L = ambient_occlusion_L,
 };

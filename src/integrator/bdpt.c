@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* Bidirectional path tracing: a path from the sensor and one from a light, and every way to join the two.
  *
- *     I = sum over s, t of E[ w_s,t f(x) / p_s,t(x) ],     w_s,t = p_s,t^b / sum over s', t' of p_s',t'^b,     b = 2 or 1
+ *     I = sum over s, t of E[ w_s,t f(x) / p_s,t(x) ],     w_s,t = p_s,t^b / sum over s', t' of p_s',t'^b,     b = 2 or
+ * 1
  *
  * s vertices from the light, t from the sensor. The density p of a path by area is a product over its vertices, so that
- * neighbouring strategies differ by one factor: p_s-1,t+1 / p_s,t = p(x_t from the sensor) / p(x_t from the light), and all
- * ratios are running products of these. s = 0: the sensor's path meets a light. s = 1: a place on a light is drawn for the
- * receiver, with a density of its own, c times that with which light paths begin. t = 1: the vertex is told to the target.
- * E. Veach, Robust Monte Carlo methods for light transport simulation, 1997, 10; E. Lafortune & Y. Willems 1993.
- * Limits: paths of more than 100 scatterings are not followed. */
+ * neighbouring strategies differ by one factor: p_s-1,t+1 / p_s,t = p(x_t from the sensor) / p(x_t from the light), and
+ * all ratios are running products of these. s = 0: the sensor's path meets a light. s = 1: a place on a light is drawn
+ * for the receiver, with a density of its own, c times that with which light paths begin. t = 1: the vertex is told to
+ * the target. E. Veach, Robust Monte Carlo methods for light transport simulation, 1997, 10; E. Lafortune & Y. Willems
+ * 1993. Limits: paths of more than 100 scatterings are not followed. */
 #include "integrator/vertices.h"
 
 enum heuristic { POWER, BALANCE };
@@ -163,7 +164,8 @@ static void meet(void *user, int count, const struct sr_hit *hit, sr_vec3 d, flo
     for (uint32_t k = 0; k < (hit ? 1 : lights->infinite_count); ++k) {
         uint32_t index = hit ? hit->light : lights->infinite[k];
         struct sr_light light = lights->lights[index];
-        sr_spectrum Le = hit ? light.model->Le(light.self, &hit->point, sr_neg(d), p->w) : sr_light_escaping(light, last->x.p, d, p->w);
+        sr_spectrum Le = hit ? light.model->Le(light.self, &hit->point, sr_neg(d), p->w)
+                             : sr_light_escaping(light, last->x.p, d, p->w);
         if (!sr_spectrum_any(Le > 0.0f))
             continue;
         struct step v[SR_MAX_SCATTERINGS + 2];

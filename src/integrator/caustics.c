@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* Path tracing with caustics by photons: light that mirrors and clear glass throw on a surface, whether the surface is seen
- * directly, in a mirror or through glass.
+/* Path tracing with caustics by photons: light that mirrors and clear glass throw on a surface, whether the surface is
+ * seen directly, in a mirror or through glass.
  *
- * Each path of light has one estimator. Seen from its light, it is scattered by s >= 0 delta reflections and refractions before
- * anything else scatters it. Paths with s = 0 and those that nothing else scatters are traced from the sensor, as in path.c; paths
- * with s > 0 are joined where they first meet anything else, at x, by the density of photons about x:
+ * Each path of light has one estimator. Seen from its light, it is scattered by s >= 0 delta reflections and
+ * refractions before anything else scatters it. Paths with s = 0 and those that nothing else scatters are traced from
+ * the sensor, as in path.c; paths with s > 0 are joined where they first meet anything else, at x, by the density of
+ * photons about x:
  *
  *     L(x, wo) = 1 / (paths pi r^2) SUM f(wo, wi) flux        over photons closer than r
  *
- * H. W. Jensen 1996; r shrinks from sample to sample (photon_map.c), so that the picture converges to the equation's solution.
- * Limits: caustics are blurred by r, which error bars do not tell; what slightly rough glass throws is left to path tracing; a meter,
- * which shares nothing, is read by path tracing alone. */
+ * H. W. Jensen 1996; r shrinks from sample to sample (photon_map.c), so that the picture converges to the equation's
+ * solution. Limits: caustics are blurred by r, which error bars do not tell; what slightly rough glass throws is left
+ * to path tracing; a meter, which shares nothing, is read by path tracing alone. */
 #include "integrator/path.h"
 #include "integrator/photon_map.h"
 #include "integrator/shade.h"
@@ -25,19 +26,24 @@ struct caustics {
 
 static const struct sr_param params[] = {
     {SR_PARAM_INT, "maxdepth", "1", 0, 1e6, 5, offsetof(struct caustics, max_depth), "most scatterings of a path"},
-    {SR_PARAM_ENUM, "lightsampler", "1", 0, 3, 0, offsetof(struct caustics, light_sampler), "bvh|power|uniform|exhaustive"},
-    {SR_PARAM_INT, "photonsperiteration", "1", -1, 1e9, -1, offsetof(struct caustics, photons), "paths from the lights for each sample; -1: as many as pixels"},
-    {SR_PARAM_FLOAT, "radius", "m", 0, 1e30, 0, offsetof(struct caustics, radius), "that a photon is spread over at first; 0: 0.4 % of the scene's diagonal"},
+    {SR_PARAM_ENUM, "lightsampler", "1", 0, 3, 0, offsetof(struct caustics, light_sampler),
+     "bvh|power|uniform|exhaustive"},
+    {SR_PARAM_INT, "photonsperiteration", "1", -1, 1e9, -1, offsetof(struct caustics, photons),
+     "paths from the lights for each sample; -1: as many as pixels"},
+    {SR_PARAM_FLOAT, "radius", "m", 0, 1e30, 0, offsetof(struct caustics, radius),
+     "that a photon is spread over at first; 0: 0.4 % of the scene's diagonal"},
     {.name = NULL},
 };
 
-static sr_status begin(const void *self, const struct sr_scene *scene, const struct sr_picture_plan *picture, void **shared, struct sr_error *error)
+static sr_status begin(const void *self, const struct sr_scene *scene, const struct sr_picture_plan *picture,
+                       void **shared, struct sr_error *error)
 {
     const struct caustics *m = self;
     *shared = NULL;
     if (!sr_scene_has_mirrors(scene)) // then there are no such paths
         return SR_OK;
-    struct sr_photon_plan plan = {.radius = m->radius, .paths = m->photons > 0 ? (uint64_t)m->photons : 0, .max_depth = m->max_depth};
+    struct sr_photon_plan plan = {
+        .radius = m->radius, .paths = m->photons > 0 ? (uint64_t)m->photons : 0, .max_depth = m->max_depth};
     *shared = sr_photon_maps_create(scene, &plan, picture);
     return *shared ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for maps of photons");
 }
@@ -54,7 +60,7 @@ struct gathering {
     const struct sr_bsdf *bsdf;
     const struct sr_frame *frame;
     sr_vec3 wo;
-    uint32_t most; // scatterings that a photon may have behind it
+    uint32_t most;           // scatterings that a photon may have behind it
     sr_spectrum sum, single; // of photons of all wavelengths, and of those of which only the first is left
 };
 
@@ -68,13 +74,15 @@ static void gather_one(void *user, const struct sr_photon *photon)
     if (in_cos < 1e-6f)
         return;
     // flux counts by the true surface, f by the shading normal (Veach 1997, 5.3)
-    sr_spectrum fL = sr_bsdf_f_pdf(g->bsdf, g->wo, wi, SR_RADIANCE, &pdf) * photon->flux * (sr_abs_cos_theta(wi) / in_cos);
+    sr_spectrum fL =
+        sr_bsdf_f_pdf(g->bsdf, g->wo, wi, SR_RADIANCE, &pdf) * photon->flux * (sr_abs_cos_theta(wi) / in_cos);
     *(photon->is_single ? &g->single : &g->sum) += fL;
 }
 
 /* ---- paths from the sensor ---- */
 
-static void gather(const struct sr_photon_map *map, struct gathering *g, sr_spectrum beta, sr_spectrum *L, sr_spectrum *L_single)
+static void gather(const struct sr_photon_map *map, struct gathering *g, sr_spectrum beta, sr_spectrum *L,
+                   sr_spectrum *L_single)
 {
     g->sum = g->single = SR_BLACK;
     sr_photons_near(map, g->x->point.p, gather_one, g);
@@ -84,8 +92,9 @@ static void gather(const struct sr_photon_map *map, struct gathering *g, sr_spec
 }
 
 /* L along the path, but for what photons of a single wavelength bring. */
-static sr_spectrum walk(const struct caustics *m, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
-                        const struct sr_photon_map *map, struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker, sr_spectrum *single)
+static sr_spectrum walk(const struct caustics *m, const struct sr_scene *scene, const struct sr_path_start *start,
+                        const struct sr_sampler *sampler, const struct sr_photon_map *map, struct sr_wavelengths *w,
+                        struct sr_hit *first, struct sr_worker *worker, sr_spectrum *single)
 {
     const struct sr_lights *lights = sr_scene_lights(scene);
     bool has_footprints = sr_scene_has_footprints(scene);
@@ -122,7 +131,8 @@ static sr_spectrum walk(const struct caustics *m, const struct sr_scene *scene, 
         }
         struct sr_bsdf bsdf;
         struct sr_frame frame;
-        if (!sr_shade(&x, ray.d, u_bsdf[3], sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu, w, &bsdf, &frame)) {
+        if (!sr_shade(&x, ray.d, u_bsdf[3], sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu, w,
+                      &bsdf, &frame)) {
             if (!sr_pass(&x, &ray, &passed))
                 return L;
             continue;
@@ -134,16 +144,25 @@ static sr_spectrum walk(const struct caustics *m, const struct sr_scene *scene, 
         if (sr_bsdf_lobes(&bsdf) & (SR_LOBE_DIFFUSE | SR_LOBE_GLOSSY)) {
             struct sr_light_sample l;
             sr_spectrum L_direct;
-            if (sr_path_direct(lights, &x.point, &frame, &bsdf, wo, u_light, w, &l, &L_direct) && sr_unoccluded(scene, &x.point, &l, worker))
+            if (sr_path_direct(lights, &x.point, &frame, &bsdf, wo, u_light, w, &l, &L_direct) &&
+                sr_unoccluded(scene, &x.point, &l, worker))
                 L += beta * L_direct;
             if (map && bounce + 1 < m->max_depth)
-                gather(map, &(struct gathering){.x = &x, .bsdf = &bsdf, .frame = &frame, .wo = wo, .most = (uint32_t)(m->max_depth - bounce - 1)}, beta, &L, single);
+                gather(map,
+                       &(struct gathering){.x = &x,
+                                           .bsdf = &bsdf,
+                                           .frame = &frame,
+                                           .wo = wo,
+                                           .most = (uint32_t)(m->max_depth - bounce - 1)},
+                       beta, &L, single);
         }
         struct sr_bsdf_sample s;
         if (!sr_bsdf_sample(&bsdf, wo, u_bsdf[2], (sr_vec2){u_bsdf[0], u_bsdf[1]}, SR_RADIANCE, &s))
             return L;
         beta *= s.f * (sr_abs_cos_theta(s.wi) / s.pdf);
-        pdf = s.lobe & SR_LOBE_SPECULAR ? INFINITY : s.pdf_is_proportional ? sr_bsdf_pdf(&bsdf, wo, s.wi, SR_RADIANCE) : s.pdf;
+        pdf = s.lobe & SR_LOBE_SPECULAR ? INFINITY
+              : s.pdf_is_proportional   ? sr_bsdf_pdf(&bsdf, wo, s.wi, SR_RADIANCE)
+                                        : s.pdf;
         if (s.lobe & SR_LOBE_TRANSMISSION)
             eta_scale *= s.eta * s.eta;
         is_scattered |= !(s.lobe & SR_LOBE_SPECULAR);
@@ -162,15 +181,16 @@ static sr_spectrum walk(const struct caustics *m, const struct sr_scene *scene, 
     }
 }
 
-static sr_spectrum caustics_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
-                              struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
+static sr_spectrum caustics_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start,
+                              const struct sr_sampler *sampler, struct sr_wavelengths *w, struct sr_hit *first,
+                              struct sr_worker *worker)
 {
     const struct sr_photon_map *map = NULL;
     if (worker->shared) {
         map = sr_photon_map_of(worker->shared, worker->replicate, sampler->sample, worker);
         if (!map)
             return SR_BLACK + NAN; // no memory: dropped, and told
-        *w = map->w; // photons are of the same wavelengths
+        *w = map->w;               // photons are of the same wavelengths
     }
     sr_spectrum single = SR_BLACK, L = walk(self, scene, start, sampler, map, w, first, worker, &single);
     // of one wavelength: it stands for all, whether dispersion has left the sensor's path the others or not

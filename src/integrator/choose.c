@@ -55,7 +55,8 @@ static int choice_of(const char *choices, const char *word)
     }
 }
 
-static sr_status set(const struct sr_param *row, const char *value, void *at, struct sr_arena *arena, struct sr_error *error)
+static sr_status set(const struct sr_param *row, const char *value, void *at, struct sr_arena *arena,
+                     struct sr_error *error)
 {
     char *end;
     double number = strtod(value, &end);
@@ -68,16 +69,20 @@ static sr_status set(const struct sr_param *row, const char *value, void *at, st
     if (row->kind == SR_PARAM_ENUM) {
         int choice = choice_of(row->text, value);
         memcpy(at, &(int32_t){choice}, sizeof(int32_t));
-        return choice >= 0 ? SR_OK : sr_fail(error, SR_ERROR_USAGE, "%s=%s: one of %s was expected", row->name, value, row->text);
+        return choice >= 0
+                   ? SR_OK
+                   : sr_fail(error, SR_ERROR_USAGE, "%s=%s: one of %s was expected", row->name, value, row->text);
     }
     if (row->kind == SR_PARAM_BOOL) {
         bool is_true = strcmp(value, "true") == 0;
         memcpy(at, &is_true, sizeof is_true);
-        return is_true || strcmp(value, "false") == 0 ? SR_OK : sr_fail(error, SR_ERROR_USAGE, "%s=%s: true or false was expected", row->name, value);
+        return is_true || strcmp(value, "false") == 0
+                   ? SR_OK
+                   : sr_fail(error, SR_ERROR_USAGE, "%s=%s: true or false was expected", row->name, value);
     }
     if (!is_number || (row->kind == SR_PARAM_INT && number != floor(number)))
-        return sr_fail(error, SR_ERROR_USAGE, "%s=%s: a %snumber from %g to %g was expected", row->name, value, row->kind == SR_PARAM_INT ? "whole " : "",
-                       row->min, row->max);
+        return sr_fail(error, SR_ERROR_USAGE, "%s=%s: a %snumber from %g to %g was expected", row->name, value,
+                       row->kind == SR_PARAM_INT ? "whole " : "", row->min, row->max);
     if (row->kind == SR_PARAM_INT)
         memcpy(at, &(int32_t){(int32_t)number}, sizeof(int32_t));
     else
@@ -101,11 +106,13 @@ static sr_status no_such(const char *name, struct sr_error *error)
     for (int i = 0; sr_integrator_models[i]; ++i)
         n += snprintf(names + n, sizeof names - (size_t)n, "%s%s", i ? ", " : "", sr_integrator_models[i]->name);
     for (int i = 0; i < SR_STRATEGY_COUNT; ++i)
-        n += snprintf(names + n, sizeof names - (size_t)n, "%s%s", i ? ", " : "; or strategies joined by '+': ", sr_strategies[i].name);
+        n += snprintf(names + n, sizeof names - (size_t)n, "%s%s",
+                      i ? ", " : "; or strategies joined by '+': ", sr_strategies[i].name);
     return sr_fail(error, SR_ERROR_USAGE, "there is no estimator \"%s\"; there are %s", name, names);
 }
 
-sr_status sr_integrator_parse(const char *text, const struct sr_integrator *base, struct sr_arena *arena, struct sr_integrator *out, struct sr_error *error)
+sr_status sr_integrator_parse(const char *text, const struct sr_integrator *base, struct sr_arena *arena,
+                              struct sr_integrator *out, struct sr_error *error)
 {
     char *words = sr_arena_string(arena, text);
     if (!words)
@@ -136,9 +143,11 @@ sr_status sr_integrator_parse(const char *text, const struct sr_integrator *base
     }
     sr_status status = SR_OK;
     if (is_strategies)
-        status = set(find_row(model->params, "strategies", 10), words, self + find_row(model->params, "strategies", 10)->offset, arena, error);
+        status = set(find_row(model->params, "strategies", 10), words,
+                     self + find_row(model->params, "strategies", 10)->offset, arena, error);
     if (heuristic && status == SR_OK)
-        status = set(find_row(model->params, "heuristic", 9), heuristic, self + find_row(model->params, "heuristic", 9)->offset, arena, error);
+        status = set(find_row(model->params, "heuristic", 9), heuristic,
+                     self + find_row(model->params, "heuristic", 9)->offset, arena, error);
     while (status == SR_OK && *rest) {
         char *setting = rest, *equals = strchr(setting, '=');
         rest += strcspn(rest, ",");
@@ -148,9 +157,11 @@ sr_status sr_integrator_parse(const char *text, const struct sr_integrator *base
             return sr_fail(error, SR_ERROR_USAGE, "\"%s\": key=value was expected", setting);
         const struct sr_param *row = find_row(model->params, setting, (size_t)(equals - setting));
         if (!row)
-            return sr_fail(error, SR_ERROR_USAGE, "%s has no parameter \"%.*s\"", model->name, (int)(equals - setting), setting);
+            return sr_fail(error, SR_ERROR_USAGE, "%s has no parameter \"%.*s\"", model->name, (int)(equals - setting),
+                           setting);
         if (strcmp(row->name, "lightsampler") == 0)
-            return sr_fail(error, SR_ERROR_USAGE, "\"lightsampler\" is chosen by the scene file, for all estimators alike");
+            return sr_fail(error, SR_ERROR_USAGE,
+                           "\"lightsampler\" is chosen by the scene file, for all estimators alike");
         status = set(row, equals + 1, self + row->offset, arena, error);
     }
     if (status == SR_OK && model->prepare)

@@ -26,7 +26,8 @@ bool sr_trace_bare(const struct sr_scene *scene, const struct sr_ray *ray, struc
     return sr_raycast_bare(scene, ray, hit);
 }
 
-bool sr_unoccluded(const struct sr_scene *scene, const struct sr_point *x, const struct sr_light_sample *s, struct sr_worker *worker)
+bool sr_unoccluded(const struct sr_scene *scene, const struct sr_point *x, const struct sr_light_sample *s,
+                   struct sr_worker *worker)
 {
     struct sr_ray segment = sr_shadow_ray(x, s);
     worker->shadow_rays += 1;
@@ -71,7 +72,8 @@ void sr_seen_footprint(const struct sr_path_start *start, struct sr_point *x)
     sr_first_footprint(&seen, x);
 }
 
-void sr_path_footprint(const struct sr_path_start *start, struct sr_hit *x, bool is_first, bool is_scattered, float spread, float *width)
+void sr_path_footprint(const struct sr_path_start *start, struct sr_hit *x, bool is_first, bool is_scattered,
+                       float spread, float *width)
 {
     if (is_first) {
         sr_first_footprint(start, &x->point);
@@ -112,7 +114,8 @@ bool sr_has_come_in(const struct sr_scene *scene, const struct sr_light_ray *r, 
     return SR_LIKELY(!r->has_passed) || sr_unoccluded(scene, &r->from, &outside, worker);
 }
 
-sr_spectrum sr_escape_Le(const struct sr_scene *scene, const struct sr_ray *ray, const struct sr_wavelengths *wavelengths)
+sr_spectrum sr_escape_Le(const struct sr_scene *scene, const struct sr_ray *ray,
+                         const struct sr_wavelengths *wavelengths)
 {
     const struct sr_lights *lights = sr_scene_lights(scene);
     sr_spectrum Le = SR_BLACK;
@@ -124,7 +127,8 @@ sr_spectrum sr_escape_Le(const struct sr_scene *scene, const struct sr_ray *ray,
     return Le;
 }
 
-sr_spectrum sr_hit_Le(const struct sr_scene *scene, const struct sr_hit *hit, sr_vec3 w, const struct sr_wavelengths *wavelengths)
+sr_spectrum sr_hit_Le(const struct sr_scene *scene, const struct sr_hit *hit, sr_vec3 w,
+                      const struct sr_wavelengths *wavelengths)
 {
     if (hit->light == SR_NO_LIGHT)
         return SR_BLACK;
@@ -132,22 +136,18 @@ sr_spectrum sr_hit_Le(const struct sr_scene *scene, const struct sr_hit *hit, sr
     return light.model->Le(light.self, &hit->point, w, wavelengths);
 }
 
-extern const struct sr_integrator_model sr_integrator_light_path, sr_integrator_bdpt, sr_integrator_caustics, sr_integrator_guided_path, sr_integrator_roulette_path, sr_integrator_path, sr_integrator_volpath, sr_integrator_simple_volpath, sr_integrator_simple_path, sr_integrator_random_walk, sr_integrator_ambient_occlusion, sr_integrator_estimator;
+extern const struct sr_integrator_model sr_integrator_light_path, sr_integrator_bdpt, sr_integrator_caustics,
+    sr_integrator_guided_path, sr_integrator_roulette_path, sr_integrator_path, sr_integrator_volpath,
+    sr_integrator_simple_volpath, sr_integrator_simple_path, sr_integrator_random_walk, sr_integrator_ambient_occlusion,
+    sr_integrator_estimator;
 const struct sr_integrator_model *const sr_integrator_models[] = {
-    &sr_integrator_path,
-    &sr_integrator_volpath,
-    &sr_integrator_guided_path,
-    &sr_integrator_roulette_path,
-    &sr_integrator_simple_volpath,
-    &sr_integrator_simple_path,
-    &sr_integrator_random_walk,
-    &sr_integrator_ambient_occlusion,
-    &sr_integrator_light_path,
-    &sr_integrator_bdpt,
-    &sr_integrator_caustics,
-    &sr_integrator_estimator,
-    &sr_integrator_quadrature,
-    NULL,
+    &sr_integrator_path,           &sr_integrator_volpath,
+    &sr_integrator_guided_path,    &sr_integrator_roulette_path,
+    &sr_integrator_simple_volpath, &sr_integrator_simple_path,
+    &sr_integrator_random_walk,    &sr_integrator_ambient_occlusion,
+    &sr_integrator_light_path,     &sr_integrator_bdpt,
+    &sr_integrator_caustics,       &sr_integrator_estimator,
+    &sr_integrator_quadrature,     NULL,
 };
 
 const struct sr_integrator_model *sr_integrator_model_find(const char *name)

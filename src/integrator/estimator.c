@@ -4,10 +4,11 @@
  *     L(x, wo) = Le(x, wo) + integral f(wo, wi) L(x, wi) |cos theta_i| dwi        [W m^-2 sr^-1 nm^-1]
  *     estimate of what lights bring: SUM over i of  w_i(wi) h(wi) Le / p_i(wi),     SUM over i of w_i = 1
  *
- * h = f |cos theta_i| is written once; strategies differ in p_i alone. w_i: balance p_i / SUM p, power p_i^2 / SUM p^2 (Veach
- * 1997), mean 1 / n over those that could have found it. What other surfaces bring comes along one of the directions: the
- * BSDF's if that is in the set, else the cosine's, else the uniform one's; where the set has no directions at all, the BSDF's, whose ray then
- * counts only such light as no strategy of the set can draw. Mirrors and clear glass are always followed. */
+ * h = f |cos theta_i| is written once; strategies differ in p_i alone. w_i: balance p_i / SUM p, power p_i^2 / SUM p^2
+ * (Veach 1997), mean 1 / n over those that could have found it. What other surfaces bring comes along one of the
+ * directions: the BSDF's if that is in the set, else the cosine's, else the uniform one's; where the set has no
+ * directions at all, the BSDF's, whose ray then counts only such light as no strategy of the set can draw. Mirrors and
+ * clear glass are always followed. */
 #include "integrator/strategies.h"
 
 #include <string.h>
@@ -40,12 +41,14 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     for (const char *p = e->strategies;;) {
         size_t length = strcspn(p, "+");
         int i = 0;
-        while (i < SR_STRATEGY_COUNT && (strlen(sr_strategies[i].name) != length || strncmp(sr_strategies[i].name, p, length) != 0))
+        while (i < SR_STRATEGY_COUNT &&
+               (strlen(sr_strategies[i].name) != length || strncmp(sr_strategies[i].name, p, length) != 0))
             ++i;
         if (i == SR_STRATEGY_COUNT)
-            return sr_fail(error, SR_ERROR_INPUT, "there is no strategy \"%.*s\"; there are %s, %s, %s, %s, %s and %s, to be joined by '+'", (int)length, p,
-                           sr_strategies[0].name, sr_strategies[1].name, sr_strategies[2].name, sr_strategies[3].name, sr_strategies[4].name,
-                           sr_strategies[5].name);
+            return sr_fail(error, SR_ERROR_INPUT,
+                           "there is no strategy \"%.*s\"; there are %s, %s, %s, %s, %s and %s, to be joined by '+'",
+                           (int)length, p, sr_strategies[0].name, sr_strategies[1].name, sr_strategies[2].name,
+                           sr_strategies[3].name, sr_strategies[4].name, sr_strategies[5].name);
         if (e->has[i])
             return sr_fail(error, SR_ERROR_INPUT, "the strategy \"%s\" is named twice", sr_strategies[i].name);
         e->has[i] = true;
@@ -54,9 +57,12 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
         p += length + 1;
     }
     e->finds_rays = e->has[SR_BY_BSDF] || e->has[SR_BY_COSINE] || e->has[SR_BY_UNIFORM];
-    e->going_on = e->has[SR_BY_BSDF] || !e->finds_rays ? SR_BY_BSDF : e->has[SR_BY_COSINE] ? SR_BY_COSINE : SR_BY_UNIFORM;
+    e->going_on = e->has[SR_BY_BSDF] || !e->finds_rays ? SR_BY_BSDF
+                  : e->has[SR_BY_COSINE]               ? SR_BY_COSINE
+                                                       : SR_BY_UNIFORM;
     static const char *const names[] = {"balance", "power", "mean"};
-    e->label = strchr(e->strategies, '+') ? sr_arena_printf(arena, "%s:%s", e->strategies, names[e->heuristic]) : e->strategies;
+    e->label = strchr(e->strategies, '+') ? sr_arena_printf(arena, "%s:%s", e->strategies, names[e->heuristic])
+                                          : e->strategies;
     return e->label ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "not enough memory");
 }
 
@@ -119,7 +125,8 @@ static float weight_of(const struct walk *t, const struct sr_vertex *v, int by, 
 
 static struct sr_arrival arrival(const struct sr_vertex *v, sr_vec3 world, uint32_t light, const struct sr_point *there)
 {
-    return (struct sr_arrival){.world = world, .wi = sr_to_local(&v->frame, world), .light = light, .there = there, .is_met = true};
+    return (struct sr_arrival){
+        .world = world, .wi = sr_to_local(&v->frame, world), .light = light, .there = there, .is_met = true};
 }
 
 /* Light of a surface that a ray from v has met, toward v. */
@@ -185,7 +192,9 @@ static sr_spectrum drawn_light(const struct walk *t, const struct sr_vertex *v, 
         there = (struct sr_point){.p = s.p, .p_error = s.p_error, .n = s.n, .uv = s.uv};
         a = arrival(v, sr_scale(1 / r, way), index, &there);
         a.is_met = !m->is_ghost;
-        l = (struct sr_light_sample){.L = light.model->Le(light.self, &there, sr_neg(a.world), t->w), .wi = a.world, .distance = r,
+        l = (struct sr_light_sample){.L = light.model->Le(light.self, &there, sr_neg(a.world), t->w),
+                                     .wi = a.world,
+                                     .distance = r,
                                      .p = sr_point_offset(&there, sr_neg(a.world))};
     } else {
         if (!sr_light_draw(light, x, (sr_vec2){u[0], u[1]}, t->w, &l))
@@ -223,8 +232,8 @@ static sr_spectrum direct(const struct walk *t, const struct sr_vertex *v, uint3
 }
 
 /* The path's next direction. beta gains h / p; eta_scale what refraction has made of it. false: the path ends. */
-static bool go_on(const struct walk *t, const struct sr_vertex *v, uint32_t group, float coin, sr_vec3 *wi, int *by, sr_spectrum *beta, float *eta_scale,
-                  bool *is_scattered)
+static bool go_on(const struct walk *t, const struct sr_vertex *v, uint32_t group, float coin, sr_vec3 *wi, int *by,
+                  sr_spectrum *beta, float *eta_scale, bool *is_scattered)
 {
     int going_on = t->e->going_on;
     sr_u4 u = sr_sample4(t->sampler, group + 1 + (uint32_t)going_on);
@@ -263,7 +272,8 @@ static bool go_on(const struct walk *t, const struct sr_vertex *v, uint32_t grou
 }
 
 /* From a sensor ray, or from a receiver (start then holds nothing). */
-static sr_spectrum walk(const struct walk *t, const struct sr_path_start *start, const struct sr_receiver *receiver, struct sr_hit *first)
+static sr_spectrum walk(const struct walk *t, const struct sr_path_start *start, const struct sr_receiver *receiver,
+                        struct sr_hit *first)
 {
     sr_spectrum L = SR_BLACK, beta = SR_ONE;
     struct sr_ray ray = start->ray;
@@ -299,7 +309,9 @@ static sr_spectrum walk(const struct walk *t, const struct sr_path_start *start,
             v->bsdf.model = NULL;
             v->receiver = NULL;
             if (x->material)
-                sr_material_shade(x->material, &x->point, sr_neg(ray.d), u[0], sr_hash_combine(t->sampler->key + t->sampler->sample, group), t->w, &v->bsdf, &v->frame);
+                sr_material_shade(x->material, &x->point, sr_neg(ray.d), u[0],
+                                  sr_hash_combine(t->sampler->key + t->sampler->sample, group), t->w, &v->bsdf,
+                                  &v->frame);
             if (!v->bsdf.model) { // an interface: the path goes on as it was
                 if (++passed > 1000)
                     return L;
@@ -340,20 +352,29 @@ static sr_spectrum walk(const struct walk *t, const struct sr_path_start *start,
     }
 }
 
-static sr_spectrum L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
-                     struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
+static sr_spectrum L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start,
+                     const struct sr_sampler *sampler, struct sr_wavelengths *w, struct sr_hit *first,
+                     struct sr_worker *worker)
 {
     struct walk t = {self, scene, sr_scene_lights(scene), sampler, w, worker};
     return walk(&t, start, NULL, first);
 }
 
-static sr_spectrum gather(const void *self, const struct sr_scene *scene, const struct sr_receiver *receiver, const struct sr_sampler *sampler,
-                          struct sr_wavelengths *w, struct sr_worker *worker)
+static sr_spectrum gather(const void *self, const struct sr_scene *scene, const struct sr_receiver *receiver,
+                          const struct sr_sampler *sampler, struct sr_wavelengths *w, struct sr_worker *worker)
 {
     struct walk t = {self, scene, sr_scene_lights(scene), sampler, w, worker};
     return walk(&t, &(struct sr_path_start){0}, receiver, NULL);
 }
 
 const struct sr_integrator_model sr_integrator_estimator = {
-    .name = "estimator", .text = "paths from the sensor by any set of strategies", .params = params, .size = sizeof(struct estimator), .L = L, .gather = gather, .prepare = prepare, .blind = blind, .label = label,
+    .name = "estimator",
+    .text = "paths from the sensor by any set of strategies",
+    .params = params,
+    .size = sizeof(struct estimator),
+    .L = L,
+    .gather = gather,
+    .prepare = prepare,
+    .blind = blind,
+    .label = label,
 };

@@ -5,7 +5,8 @@
  *
  *     scattered:  f *= sigma_s P,      q *= sigma_t P
  *     null:       f *= (m - sigma_t) P,  q *= (m - sigma_t) P,   r *= m P     (a light's way does not ask, and goes on)
- *     through:    f *= P,  q *= P,  r *= P                                       each over the first wavelength's density
+ *     through:    f *= P,  q *= P,  r *= P                                       each over the first wavelength's
+ * density
  *
  * Where nothing scatters, no collision is real: what is absorbed is a weight. Uniform media (m = sigma_t) have no null
  * collisions, light's ways through them are not drawn at all, and what they emit is integrated. */
@@ -26,14 +27,17 @@ static inline bool is_any(sr_spectrum s)
     return sr_spectrum_any(s > 0.0f);
 }
 
-static enum sr_flight fly_uniform(const struct sr_medium *medium, float length, float *depth, const struct sr_medium_at *at, struct sr_carried *c, float *t)
+static enum sr_flight fly_uniform(const struct sr_medium *medium, float length, float *depth,
+                                  const struct sr_medium_at *at, struct sr_carried *c, float *t)
 {
     sr_spectrum sigma_t = at->sigma_a + at->sigma_s;
     length = sr_min(length, FLT_MAX); // 0 of something infinite is still nothing
     if (medium->model->glows(medium->self)) {
         sr_spectrum tau = sigma_t * length, emission = at->sigma_a * at->Le;
-        sr_spectrum thick = sr_spectrum_select(sigma_t > 0.0f, emission / sr_spectrum_select(sigma_t > 0.0f, sigma_t, SR_ONE), SR_BLACK);
-        sr_spectrum emitted = sr_spectrum_select(tau > 0.1f, thick * (1.0f - sr_spectrum_exp(-tau)), emission * length * mean_transmittance(tau));
+        sr_spectrum thick = sr_spectrum_select(
+            sigma_t > 0.0f, emission / sr_spectrum_select(sigma_t > 0.0f, sigma_t, SR_ONE), SR_BLACK);
+        sr_spectrum emitted = sr_spectrum_select(tau > 0.1f, thick * (1.0f - sr_spectrum_exp(-tau)),
+                                                 emission * length * mean_transmittance(tau));
         c->L += c->f * emitted * (1 / sr_spectrum_mean(c->q));
     }
     if (!is_any(at->sigma_s)) {
@@ -56,8 +60,9 @@ static enum sr_flight fly_uniform(const struct sr_medium *medium, float length, 
     return is_any(c->f) ? SR_FLIGHT_SCATTERED : SR_FLIGHT_LOST;
 }
 
-enum sr_flight sr_fly(const struct sr_medium *medium, const struct sr_ray *ray, float length, const struct sr_wavelengths *w, struct sr_rng *rng,
-                      float *depth, struct sr_medium_at *at, struct sr_carried *c, float *t)
+enum sr_flight sr_fly(const struct sr_medium *medium, const struct sr_ray *ray, float length,
+                      const struct sr_wavelengths *w, struct sr_rng *rng, float *depth, struct sr_medium_at *at,
+                      struct sr_carried *c, float *t)
 {
     const struct sr_medium_model *model = medium->model;
     if (model->is_uniform)
@@ -105,7 +110,8 @@ enum sr_flight sr_fly(const struct sr_medium *medium, const struct sr_ray *ray, 
     return SR_FLIGHT_THROUGH;
 }
 
-bool sr_pass(const struct sr_medium *medium, sr_vec3 o, sr_vec3 d, float length, const struct sr_wavelengths *w, struct sr_rng *rng, struct sr_passage *p)
+bool sr_pass(const struct sr_medium *medium, sr_vec3 o, sr_vec3 d, float length, const struct sr_wavelengths *w,
+             struct sr_rng *rng, struct sr_passage *p)
 {
     const struct sr_medium_model *model = medium->model;
     struct sr_medium_at at;
@@ -156,8 +162,9 @@ bool sr_pass(const struct sr_medium *medium, sr_vec3 o, sr_vec3 d, float length,
     return true;
 }
 
-bool sr_pass_to_light(const struct sr_scene *scene, const struct sr_point *x, const struct sr_medium *medium, const struct sr_light_sample *l,
-                      const struct sr_wavelengths *w, struct sr_rng *rng, struct sr_worker *worker, struct sr_passage *p)
+bool sr_pass_to_light(const struct sr_scene *scene, const struct sr_point *x, const struct sr_medium *medium,
+                      const struct sr_light_sample *l, const struct sr_wavelengths *w, struct sr_rng *rng,
+                      struct sr_worker *worker, struct sr_passage *p)
 {
     *p = (struct sr_passage){SR_ONE, SR_ONE, SR_ONE};
     if (!sr_scene_has_interfaces(scene))

@@ -3,31 +3,32 @@
  *
  *     p(w) ~ sqrt(E[(L(x, w) cos theta)^2])        [1/sr]
  *
- * which makes the estimate's second moment least where L is itself an estimate (Rath et al., Variance-aware path guiding, 2020, eq.
- * 8); two trees as by T. Mueller, M. Gross & J. Novak, Practical path guiding, 2017, but for the first one, which splits cells at the
- * mean of what fell into them, along positions and normals. The share of directions that the BSDF keeps is that with the least
+ * which makes the estimate's second moment least where L is itself an estimate (Rath et al., Variance-aware path
+ * guiding, 2020, eq. 8); two trees as by T. Mueller, M. Gross & J. Novak, Practical path guiding, 2017, but for the
+ * first one, which splits cells at the mean of what fell into them, along positions and normals. The share of
+ * directions that the BSDF keeps is that with the least
  *
  *     SUM noise pdf / pdf_k,  pdf_k = (1 - a_k) pdf_bsdf + a_k pdf_guide,
  *
- * the second moment that share a_k would have had, from the records of directions drawn otherwise. Limits: normals and positions are
- * cut to 20 bits of the bounds; sources of light smaller than 4 pi / 4^12 sr are not told apart. */
+ * the second moment that share a_k would have had, from the records of directions drawn otherwise. Limits: normals and
+ * positions are cut to 20 bits of the bounds; sources of light smaller than 4 pi / 4^12 sr are not told apart. */
 #include "integrator/guide.h"
 
 #include <string.h>
 
 enum {
     PLACE_BITS = 20,
-    MOST_DEPTH = 12,      // of trees of squares
+    MOST_DEPTH = 12, // of trees of squares
     MOST_CELLS = 1 << 14,
 
     SPLIT_RECORDS = 1500, // in a cell, to split it
     MOST_SPLITS = 4,      // of a cell, one after the other, between two rounds
     NO_NODE = 0xffffffff
 };
-static const float fine_share = 0.02f;     // of a cell's light in a square, to split it
-static const double doubt = 64;            // records that speak for the mean of all cells
-static const double doubt_returns = 32;    // returns, likewise
-static const double worth = 0.97;          // of the second moment without guide: above, there is none
+static const float fine_share = 0.02f;  // of a cell's light in a square, to split it
+static const double doubt = 64;         // records that speak for the mean of all cells
+static const double doubt_returns = 32; // returns, likewise
+static const double worth = 0.97;       // of the second moment without guide: above, there is none
 const float sr_guide_shares[SR_GUIDE_SHARES] = {0, 0.125f, 0.25f, 0.375f, 0.5f};
 static const double record_most = 0x1p40, unit_of_mean = 0x1p-32; // integers of a record: see sr_guide_create
 
@@ -56,9 +57,11 @@ struct sr_guide {
 
 struct sr_guide_place sr_guide_place(const struct sr_guide *g, sr_vec3 p, sr_vec3 n)
 {
-    const float last = (1 << PLACE_BITS) - 1, of_normal = 0.125f * last; // a normal's whole range counts as a quarter of the bounds
+    const float last = (1 << PLACE_BITS) - 1,
+                of_normal = 0.125f * last; // a normal's whole range counts as a quarter of the bounds
     sr_vec3 d = sr_sub(p, g->bounds.lo);
-    float x[6] = {d.x * g->scale.x, d.y * g->scale.y, d.z * g->scale.z, (n.x + 1) * of_normal, (n.y + 1) * of_normal, (n.z + 1) * of_normal};
+    float x[6] = {d.x * g->scale.x,      d.y * g->scale.y,      d.z * g->scale.z,
+                  (n.x + 1) * of_normal, (n.y + 1) * of_normal, (n.z + 1) * of_normal};
     struct sr_guide_place place;
     for (int i = 0; i < 6; ++i)
         place.of[i] = (uint32_t)sr_clamp(x[i], 0, last);
@@ -162,7 +165,8 @@ static void add_place(struct sr_guide_cell *cell, const struct sr_guide_place *p
     }
 }
 
-void sr_guide_add_return(struct sr_guide *g, uint32_t number, const struct sr_guide_place *place, int kind, double brought, uint64_t cost)
+void sr_guide_add_return(struct sr_guide *g, uint32_t number, const struct sr_guide_place *place, int kind,
+                         double brought, uint64_t cost)
 {
     struct sr_guide_cell *cell = &((struct sr_guide_cell *)g->cells.data)[number];
     struct sr_guide_returns *r = &cell->returns[kind];
@@ -232,9 +236,10 @@ struct growth {
     bool has_failed;
 };
 
-/* A square of the new tree: where old is no node, an even one with that sum and mass. `shift` halves the sums so many times. Returns
- * its number. */
-static uint32_t grow(struct growth *b, const struct sr_guide *g, uint32_t old, uint64_t sum, float mass, float least, int depth, int shift)
+/* A square of the new tree: where old is no node, an even one with that sum and mass. `shift` halves the sums so many
+ * times. Returns its number. */
+static uint32_t grow(struct growth *b, const struct sr_guide *g, uint32_t old, uint64_t sum, float mass, float least,
+                     int depth, int shift)
 {
     uint32_t number = (uint32_t)b->squares.count;
     if (!sr_array_push(&b->squares, sizeof(struct square)) || !sr_array_push(&b->sums, sizeof(struct sums))) {
@@ -288,7 +293,8 @@ static void judge(const struct sr_guide *g, struct verdict *v)
         double n = 0;
         for (size_t i = 0; i < g->cells.count; ++i) {
             const struct sr_guide_returns *r = &cells[i].returns[kind];
-            n += (double)r->count, m->brought += (double)r->brought, m->brought2 += (double)r->brought2, m->cost += (double)r->cost;
+            n += (double)r->count, m->brought += (double)r->brought, m->brought2 += (double)r->brought2,
+                m->cost += (double)r->cost;
         }
         n = n > 0 ? n : 1;
         m->brought /= n, m->brought2 /= n, m->cost /= n;
@@ -299,7 +305,8 @@ static float best_share(const struct sr_guide_cell *cell, int kind, const double
 {
     if (all[0] < 0) // nothing has been measured yet
         return sr_guide_shares[SR_GUIDE_SHARES / 2];
-    double n = (double)cell->measured[kind], none = n > 0 ? (double)cell->moments[kind][0] : 0, own = none > 0 ? n / none : 0, weight = own > 0 ? n : 0;
+    double n = (double)cell->measured[kind], none = n > 0 ? (double)cell->moments[kind][0] : 0,
+           own = none > 0 ? n / none : 0, weight = own > 0 ? n : 0;
     double best = worth * (weight + doubt);
     int chosen = 0;
     for (int k = 1; k < SR_GUIDE_SHARES; ++k) {
@@ -313,13 +320,15 @@ static float best_share(const struct sr_guide_cell *cell, int kind, const double
 }
 
 /* What a cell's returns say, and the mean of all where there are few; the cell keeps its share of them. */
-static void learn_returns(struct sr_guide_cell *cell, const struct sr_guide *g, const struct sr_guide_cell *old, int kind, const struct mean_return *all,
-                          int shift)
+static void learn_returns(struct sr_guide_cell *cell, const struct sr_guide *g, const struct sr_guide_cell *old,
+                          int kind, const struct mean_return *all, int shift)
 {
     const struct sr_guide_returns *r = &old->returns[kind];
     double n = (double)r->count + doubt_returns, brought = (double)r->brought + doubt_returns * all->brought,
-           brought2 = (double)r->brought2 + doubt_returns * all->brought2, cost = (double)r->cost + doubt_returns * all->cost;
-    cell->returns[kind] = (struct sr_guide_returns){r->count >> shift, r->brought >> shift, r->brought2 >> shift, r->cost >> shift};
+           brought2 = (double)r->brought2 + doubt_returns * all->brought2,
+           cost = (double)r->cost + doubt_returns * all->cost;
+    cell->returns[kind] =
+        (struct sr_guide_returns){r->count >> shift, r->brought >> shift, r->brought2 >> shift, r->cost >> shift};
     cell->mean[kind] = brought > 0 ? (float)(brought / (n * g->per_light)) : 0;
     cell->worth[kind] = cost > 0 ? brought2 > 0 ? (float)sqrt(brought2 / (cost * g->per_noise)) : 0 : INFINITY;
 }
@@ -339,7 +348,8 @@ static struct spread spread_of(const struct sr_guide_cell *cell)
     return s;
 }
 
-/* Cuts it at its mean along the axis on which it is widest: it becomes one half, the other is returned, each as if all were even. */
+/* Cuts it at its mean along the axis on which it is widest: it becomes one half, the other is returned, each as if all
+ * were even. */
 static struct spread halve(struct spread *s, struct node *split)
 {
     for (uint32_t i = 1; i < 6; ++i)
@@ -376,8 +386,8 @@ static bool copy_nodes(const struct sr_guide *from, struct sr_guide *to)
 }
 
 /* The leaf's cell in the new guide; its sums halved `shift` times. */
-static bool add_cell(struct sr_guide *next, const struct sr_guide *g, const struct sr_guide_cell *old, uint32_t leaf, int shift, float mass,
-                     const struct verdict *v)
+static bool add_cell(struct sr_guide *next, const struct sr_guide *g, const struct sr_guide_cell *old, uint32_t leaf,
+                     int shift, float mass, const struct verdict *v)
 {
     struct sr_guide_cell *cell = sr_array_push(&next->cells, sizeof *cell);
     if (!cell)
@@ -396,15 +406,16 @@ static bool add_cell(struct sr_guide *next, const struct sr_guide *g, const stru
         for (int k = 0; k < SR_GUIDE_SHARES; ++k)
             cell->moments[kind][k] = old->moments[kind][k] >> (shift + 1);
     }
-    cell->root = grow(&growth, g, old->root, 0, mass, mass > 0 ? fine_share * mass : INFINITY, 1, shift + 1); // and so does what coarser cells have seen
+    cell->root = grow(&growth, g, old->root, 0, mass, mass > 0 ? fine_share * mass : INFINITY, 1,
+                      shift + 1); // and so does what coarser cells have seen
     next->squares = growth.squares;
     next->sums = growth.sums;
     ((struct node *)next->nodes.data)[leaf].cell = (uint32_t)next->cells.count - 1;
     return !growth.has_failed;
 }
 
-static bool refine_leaf(struct sr_guide *next, const struct sr_guide *g, const struct sr_guide_cell *old, struct spread spread, uint32_t leaf, int shift,
-                        float mass, const struct verdict *v)
+static bool refine_leaf(struct sr_guide *next, const struct sr_guide *g, const struct sr_guide_cell *old,
+                        struct spread spread, uint32_t leaf, int shift, float mass, const struct verdict *v)
 {
     if (spread.records < SPLIT_RECORDS || shift >= MOST_SPLITS || next->nodes.count >= 2 * MOST_CELLS)
         return add_cell(next, g, old, leaf, shift, mass, v);
@@ -413,12 +424,14 @@ static bool refine_leaf(struct sr_guide *next, const struct sr_guide *g, const s
     if (!sr_array_push(&next->nodes, sizeof split) || !sr_array_push(&next->nodes, sizeof split))
         return false;
     ((struct node *)next->nodes.data)[leaf] = split;
-    return refine_leaf(next, g, old, spread, split.child, shift + 1, mass, v) && refine_leaf(next, g, old, other, split.child + 1, shift + 1, mass, v);
+    return refine_leaf(next, g, old, spread, split.child, shift + 1, mass, v) &&
+           refine_leaf(next, g, old, other, split.child + 1, shift + 1, mass, v);
 }
 
 bool sr_guide_refine(struct sr_guide *g)
 {
-    struct sr_guide next = {.bounds = g->bounds, .scale = g->scale, .per_light = g->per_light, .per_noise = g->per_noise};
+    struct sr_guide next = {
+        .bounds = g->bounds, .scale = g->scale, .per_light = g->per_light, .per_noise = g->per_noise};
     struct verdict v;
     judge(g, &v);
     bool is_done = copy_nodes(g, &next);
@@ -444,13 +457,15 @@ struct sr_guide *sr_guide_create(const struct sr_box *bounds, double light, doub
         return NULL;
     g->bounds = *bounds;
     const float range = (float)(1 << PLACE_BITS);
-    float side = sr_max(sr_max_component(sr_box_diagonal(*bounds)), 1e-30f); // the same along all axes, so that spreads can be compared
+    float side = sr_max(sr_max_component(sr_box_diagonal(*bounds)),
+                        1e-30f); // the same along all axes, so that spreads can be compared
     g->scale = (sr_vec3){range / side, range / side, range / side};
     g->per_light = light > 0 ? 1 / (unit_of_mean * light) : 0;
     g->per_noise = noise > 0 ? 1 / (unit_of_mean * noise) : 0;
     struct node *root = sr_array_push(&g->nodes, sizeof *root);
     struct sr_guide_cell *cell = sr_array_push(&g->cells, sizeof *cell);
-    if (!root || !cell || !sr_array_push(&g->squares, sizeof(struct square)) || !sr_array_push(&g->sums, sizeof(struct sums))) {
+    if (!root || !cell || !sr_array_push(&g->squares, sizeof(struct square)) ||
+        !sr_array_push(&g->sums, sizeof(struct sums))) {
         sr_guide_destroy(g);
         return NULL;
     }

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* For the estimators of this room: from where light comes to a place, as learned from paths; to draw directions by.
  *
- * Places (position and normal) lie in the cells of a binary tree, and each cell has a density over the sphere: constant on the
- * leaves of a tree of squares, which the equal-area map lays on the sphere. It is learned in rounds. Within one, nothing changes but
- * sums of integers, so that what is learned depends neither on the order of the records nor on who made them. */
+ * Places (position and normal) lie in the cells of a binary tree, and each cell has a density over the sphere: constant
+ * on the leaves of a tree of squares, which the equal-area map lays on the sphere. It is learned in rounds. Within one,
+ * nothing changes but sums of integers, so that what is learned depends neither on the order of the records nor on who
+ * made them. */
 #ifndef SR_INTEGRATOR_GUIDE_H
 #define SR_INTEGRATOR_GUIDE_H
 
@@ -37,8 +38,9 @@ struct sr_guide_place {
     uint32_t of[6];
 };
 
-/* bounds: of places. light, noise: the expected values of a record's light and noise, which the integers are sized by: the sums
- * hold 2^24 records, whatever they are. Where returns are added, the two are those of what one brings, and of its square. NULL: no memory. */
+/* bounds: of places. light, noise: the expected values of a record's light and noise, which the integers are sized by:
+ * the sums hold 2^24 records, whatever they are. Where returns are added, the two are those of what one brings, and of
+ * its square. NULL: no memory. */
 struct sr_guide *sr_guide_create(const struct sr_box *bounds, double light, double noise);
 void sr_guide_destroy(struct sr_guide *guide);
 
@@ -49,25 +51,27 @@ size_t sr_guide_cell_count(const struct sr_guide *guide);
 
 /* Only where the cell has light. */
 float sr_guide_pdf(const struct sr_guide *guide, const struct sr_guide_cell *cell, sr_vec3 w); // [1/sr]
-float sr_guide_sample(const struct sr_guide *guide, const struct sr_guide_cell *cell, sr_vec2 u, sr_vec3 *w); // returns its density
+float sr_guide_sample(const struct sr_guide *guide, const struct sr_guide_cell *cell, sr_vec2 u,
+                      sr_vec3 *w); // returns its density
 
 /* A direction that has been drawn. Threads may add records at the same time, while nobody refines. */
 struct sr_guide_record {
     uint32_t cell;
     struct sr_guide_place place;
     sr_vec3 w;
-    double light;              // (L cos theta)^2 / pdf
-    bool is_direction;         // false: a delta function chose it; light is not looked at
+    double light;      // (L cos theta)^2 / pdf
+    bool is_direction; // false: a delta function chose it; light is not looked at
     int kind;
-    double noise;              // what came of it, as the picture has it, squared
+    double noise;                   // what came of it, as the picture has it, squared
     float pdf, pdf_bsdf, pdf_guide; // pdf: as it was drawn
 };
 void sr_guide_add(struct sr_guide *guide, const struct sr_guide_record *record);
 /* A path that has gone on from a place. A guide takes records or returns, not both. */
-void sr_guide_add_return(struct sr_guide *guide, uint32_t cell, const struct sr_guide_place *place, int kind, double brought, uint64_t cost);
+void sr_guide_add_return(struct sr_guide *guide, uint32_t cell, const struct sr_guide_place *place, int kind,
+                         double brought, uint64_t cost);
 
-/* Makes densities and shares of the sums, and finer cells and squares where there is enough to fill them. false: no memory, the guide
- * is as it was. */
+/* Makes densities and shares of the sums, and finer cells and squares where there is enough to fill them. false: no
+ * memory, the guide is as it was. */
 bool sr_guide_refine(struct sr_guide *guide);
 
 #endif

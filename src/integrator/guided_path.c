@@ -3,17 +3,18 @@
  *
  *     p(wi) = (1 - a) p_bsdf(wi) + a p_guide(x, wi)        [1/sr]
  *
- * One direction is drawn from the mixture, and the mixture stands in every weight (Veach 1997, power heuristic, against directions
- * toward lights), so each sample is unbiased whatever has been learned. T. Mueller, M. Gross & J. Novak, Practical path guiding, 2017.
+ * One direction is drawn from the mixture, and the mixture stands in every weight (Veach 1997, power heuristic, against
+ * directions toward lights), so each sample is unbiased whatever has been learned. T. Mueller, M. Gross & J. Novak,
+ * Practical path guiding, 2017.
  *
- * The pilot takes a share of the picture's samples on top, with numbers of its own, and throws them away; what it learns is frozen
- * before the picture's first sample (guide.c). It weighs the paths that it has drawn from the mixture as plain path tracing would
- * have found them:
+ * The pilot takes a share of the picture's samples on top, with numbers of its own, and throws them away; what it
+ * learns is frozen before the picture's first sample (guide.c). It weighs the paths that it has drawn from the mixture
+ * as plain path tracing would have found them:
  *
  *     E_plain[F^2] = E[SUM_de c_d c_e W_min(d,e)],  W_d = PRODUCT over the first d scatterings of p / p_bsdf,
  *
- * c_d being what a path gains after d scatterings; where the variance saved is not worth the time, path.c does the picture. Limits: as
- * path.c's without translucent bodies; a meter, which has no pilot, is read by plain paths. */
+ * c_d being what a path gains after d scatterings; where the variance saved is not worth the time, path.c does the
+ * picture. Limits: as path.c's without translucent bodies; a meter, which has no pilot, is read by plain paths. */
 #include "integrator/guide.h"
 #include "integrator/path.h"
 #include "integrator/shade.h"
@@ -22,10 +23,10 @@
 #include <stdio.h>
 
 enum { GUIDE_AUTO, GUIDE_ON, GUIDE_OFF };
-enum { MOST_RECORDS = 16 }; // of a path
+enum { MOST_RECORDS = 16 };                                                  // of a path
 enum { MOST_PILOT = 1 << 21, LEAST_PILOT = 1 << 13, FIRST_ROUND = 1 << 11 }; // [paths]
-enum { CHUNK = 256 };       // [pairs of paths] that a thread takes at a time
-enum { TILES = 24 };        // along each side of the picture
+enum { CHUNK = 256 }; // [pairs of paths] that a thread takes at a time
+enum { TILES = 24 };  // along each side of the picture
 
 // a price list of what the pilot counts, so that its verdict depends on no clock [1]
 static const double ray_cost = 1, shadow_cost = 0.6, vertex_cost = 1.2, walk_cost = 0.45, guide_cost = 1.1;
@@ -39,9 +40,11 @@ struct guided {
 
 static const struct sr_param params[] = {
     {SR_PARAM_INT, "maxdepth", "1", 0, 1e6, 5, offsetof(struct guided, path.max_depth), "most scatterings of a path"},
-    {SR_PARAM_ENUM, "lightsampler", "1", 0, 3, 0, offsetof(struct guided, path.light_sampler), "bvh|power|uniform|exhaustive"},
+    {SR_PARAM_ENUM, "lightsampler", "1", 0, 3, 0, offsetof(struct guided, path.light_sampler),
+     "bvh|power|uniform|exhaustive"},
     {SR_PARAM_ENUM, "guiding", "1", 0, 2, 0, offsetof(struct guided, guiding), "auto|on|off"},
-    {SR_PARAM_FLOAT, "pilot", "1", 0, 10, 0.06, offsetof(struct guided, pilot), "samples of the pilot, for each sample of the picture"},
+    {SR_PARAM_FLOAT, "pilot", "1", 0, 10, 0.06, offsetof(struct guided, pilot),
+     "samples of the pilot, for each sample of the picture"},
     {.name = NULL},
 };
 
@@ -50,7 +53,8 @@ struct shared {
     struct sr_guide *guide; // NULL: nothing has been learned yet
     bool is_guiding;
     bool is_exploring; // every cell draws some directions by the guide, so that its worth is known everywhere
-    /* Variance counts by how bright the picture is there, so that its dark parts have a say: 1 / (mean^2 + (0.1 mean of all)^2) of tiles. */
+    /* Variance counts by how bright the picture is there, so that its dark parts have a say: 1 / (mean^2 + (0.1 mean of
+     * all)^2) of tiles. */
     double mean, weight[TILES * TILES];
     uint64_t sum[TILES * TILES], count[TILES * TILES]; // of paths, in units of 2^-20 of the first round's mean
 };
@@ -67,8 +71,8 @@ struct lesson {
     struct step steps[MOST_RECORDS];
     int count;
     struct sr_box places;
-    double importance;           // [1] of variance in this part of the picture
-    double light, noise;         // means' sums: see sr_guide_create
+    double importance;   // [1] of variance in this part of the picture
+    double light, noise; // means' sums: see sr_guide_create
     uint64_t lights, noises;
     double total, square, plain; // of the path: F, F^2, and the latter's expectation without guide [of L]
     double weight, weighed;      // W_d; SUM c_d W_d
@@ -117,8 +121,8 @@ static void learn(struct lesson *l, const struct shared *shared, sr_spectrum L, 
 /* ---- a path ---- */
 
 /* The share of directions that the guide draws at x, its cell told. 0: none. */
-static float guided_share(const struct shared *shared, const struct sr_point *x, sr_vec3 d, const struct sr_bsdf *bsdf, const struct sr_guide_cell **cell,
-                          struct sr_guide_record *record)
+static float guided_share(const struct shared *shared, const struct sr_point *x, sr_vec3 d, const struct sr_bsdf *bsdf,
+                          const struct sr_guide_cell **cell, struct sr_guide_record *record)
 {
     record->place = sr_guide_place(shared->guide, x->p, sr_face_forward(x->n, sr_neg(d)));
     record->cell = sr_guide_find(shared->guide, &record->place);
@@ -129,26 +133,29 @@ static float guided_share(const struct shared *shared, const struct sr_point *x,
 }
 
 /* sr_path_direct against the mixture. */
-static bool direct(const struct sr_lights *lights, const struct shared *shared, const struct sr_guide_cell *cell, float share, const struct sr_point *x,
-                   const struct sr_frame *frame, const struct sr_bsdf *bsdf, sr_vec3 wo, sr_u4 u, const struct sr_wavelengths *w, struct sr_light_sample *l,
-                   sr_spectrum *L)
+static bool direct(const struct sr_lights *lights, const struct shared *shared, const struct sr_guide_cell *cell,
+                   float share, const struct sr_point *x, const struct sr_frame *frame, const struct sr_bsdf *bsdf,
+                   sr_vec3 wo, sr_u4 u, const struct sr_wavelengths *w, struct sr_light_sample *l, sr_spectrum *L)
 {
     uint32_t index;
     float pmf, pdf_bsdf;
-    if (!sr_lights_pick(lights, x, u[2], &index, &pmf) || !sr_light_draw(lights->lights[index], x, (sr_vec2){u[0], u[1]}, w, l))
+    if (!sr_lights_pick(lights, x, u[2], &index, &pmf) ||
+        !sr_light_draw(lights->lights[index], x, (sr_vec2){u[0], u[1]}, w, l))
         return false;
     sr_vec3 wi = sr_to_local(frame, l->wi);
     sr_spectrum fL = sr_bsdf_f_pdf(bsdf, wo, wi, SR_RADIANCE, &pdf_bsdf) * l->L * sr_abs_cos_theta(wi);
     if (!sr_spectrum_any(fL > 0.0f))
         return false;
-    float pdf = pmf * l->pdf, other = l->is_delta ? 0 : (1 - share) * pdf_bsdf + share * sr_guide_pdf(shared->guide, cell, l->wi);
+    float pdf = pmf * l->pdf,
+          other = l->is_delta ? 0 : (1 - share) * pdf_bsdf + share * sr_guide_pdf(shared->guide, cell, l->wi);
     *L = fL * (sr_mis_weight(pdf, other) / pdf);
     return true;
 }
 
 /* Draws wi from the mixture: f |cos theta| / p in *gain; the densities in the record. false: the path ends. */
-static bool draw(const struct shared *shared, const struct sr_guide_cell *cell, float share, const struct sr_frame *frame, const struct sr_bsdf *bsdf, sr_vec3 wo,
-                 sr_u4 u, bool is_learning, struct sr_bsdf_sample *s, sr_spectrum *gain, struct sr_guide_record *r)
+static bool draw(const struct shared *shared, const struct sr_guide_cell *cell, float share,
+                 const struct sr_frame *frame, const struct sr_bsdf *bsdf, sr_vec3 wo, sr_u4 u, bool is_learning,
+                 struct sr_bsdf_sample *s, sr_spectrum *gain, struct sr_guide_record *r)
 {
     bool wants_guide = share > 0 || (is_learning && cell && cell->has_light);
     sr_vec2 u2 = {u[0], u[1]};
@@ -167,22 +174,26 @@ static bool draw(const struct shared *shared, const struct sr_guide_cell *cell, 
     }
     r->is_direction = !(s->lobe & SR_LOBE_SPECULAR);
     r->pdf = (1 - share) * r->pdf_bsdf + share * r->pdf_guide;
-    // what the BSDF has drawn may share an unknown factor with its density: then only their ratio is known, and it is weighed against
-    // the guide by a density like it
-    float weight = u[2] < share ? 1 / r->pdf : share > 0 && r->pdf > 0 ? r->pdf_bsdf / (r->pdf * s->pdf) : 1 / ((1 - share) * s->pdf);
+    // what the BSDF has drawn may share an unknown factor with its density: then only their ratio is known, and it is
+    // weighed against the guide by a density like it
+    float weight = u[2] < share              ? 1 / r->pdf
+                   : share > 0 && r->pdf > 0 ? r->pdf_bsdf / (r->pdf * s->pdf)
+                                             : 1 / ((1 - share) * s->pdf);
     *gain = s->f * (sr_abs_cos_theta(s->wi) * weight);
     return true;
 }
 
-static sr_spectrum walk(const struct guided *m, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
-                        const struct shared *shared, struct lesson *lesson, struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
+static sr_spectrum walk(const struct guided *m, const struct sr_scene *scene, const struct sr_path_start *start,
+                        const struct sr_sampler *sampler, const struct shared *shared, struct lesson *lesson,
+                        struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
 {
     const struct sr_lights *lights = sr_scene_lights(scene);
     bool has_footprints = sr_scene_has_footprints(scene);
     float width = 0, spread = has_footprints ? 0.5f * (sr_length(start->dddx) + sr_length(start->dddy)) : 0;
     struct sr_ray ray = start->ray;
     sr_spectrum L = SR_BLACK, beta = SR_ONE;
-    sr_spectrum unguided = SR_ONE; // beta, had the BSDF drawn these directions: what lives on by it does so however it was found
+    sr_spectrum unguided =
+        SR_ONE; // beta, had the BSDF drawn these directions: what lives on by it does so however it was found
     float pdf = INFINITY, eta_scale = 1;
     bool is_scattered = false;
     struct sr_point from;
@@ -191,7 +202,8 @@ static sr_spectrum walk(const struct guided *m, const struct sr_scene *scene, co
         sr_u4 u_light, u_bsdf;
         sr_sample8(sampler, group, &u_light, &u_bsdf);
         struct sr_hit x;
-        bool is_hit = bounce == 0 && (first || has_footprints) ? sr_trace(scene, &ray, &x, worker) : sr_trace_bare(scene, &ray, &x, worker);
+        bool is_hit = bounce == 0 && (first || has_footprints) ? sr_trace(scene, &ray, &x, worker)
+                                                               : sr_trace_bare(scene, &ray, &x, worker);
         if (first && bounce == 0)
             *first = is_hit ? x : (struct sr_hit){.t = INFINITY};
         if (!is_hit || x.light != SR_NO_LIGHT) {
@@ -223,15 +235,17 @@ static sr_spectrum walk(const struct guided *m, const struct sr_scene *scene, co
         const struct sr_guide_cell *cell = NULL;
         struct sr_guide_record record = {0};
         float share = 0;
-        // where no direction has a density, none is guided; nor where the next surface is not looked at but for its own light
+        // where no direction has a density, none is guided; nor where the next surface is not looked at but for its own
+        // light
         bool is_guidable = sr_bsdf_lobes(&bsdf) & (SR_LOBE_DIFFUSE | SR_LOBE_GLOSSY) && bounce + 1 < m->path.max_depth;
         if (is_guidable && shared->guide)
             share = guided_share(shared, &x.point, ray.d, &bsdf, &cell, &record);
         struct sr_light_sample l;
         sr_spectrum L_direct;
-        bool is_lit = sr_bsdf_lobes(&bsdf) & (SR_LOBE_DIFFUSE | SR_LOBE_GLOSSY) &&
-                      (share > 0 ? direct(lights, shared, cell, share, &x.point, &frame, &bsdf, wo, u_light, w, &l, &L_direct)
-                                 : sr_path_direct(lights, &x.point, &frame, &bsdf, wo, u_light, w, &l, &L_direct));
+        bool is_lit =
+            sr_bsdf_lobes(&bsdf) & (SR_LOBE_DIFFUSE | SR_LOBE_GLOSSY) &&
+            (share > 0 ? direct(lights, shared, cell, share, &x.point, &frame, &bsdf, wo, u_light, w, &l, &L_direct)
+                       : sr_path_direct(lights, &x.point, &frame, &bsdf, wo, u_light, w, &l, &L_direct));
         struct sr_bsdf_sample s;
         sr_spectrum gain;
         bool goes_on = draw(shared, cell, share, &frame, &bsdf, wo, u_bsdf, lesson != NULL, &s, &gain, &record);
@@ -250,7 +264,8 @@ static sr_spectrum walk(const struct guided *m, const struct sr_scene *scene, co
             lesson->weight *= record.pdf_bsdf > 0 ? (double)(record.pdf / record.pdf_bsdf) : 0;
             lesson->places = sr_box_add(lesson->places, x.point.p);
             if (is_guidable && lesson->count < MOST_RECORDS)
-                lesson->steps[lesson->count++] = (struct step){.record = record, .before = L, .beta = beta, .cosine = sr_abs_cos_theta(s.wi)};
+                lesson->steps[lesson->count++] =
+                    (struct step){.record = record, .before = L, .beta = beta, .cosine = sr_abs_cos_theta(s.wi)};
         }
         if (s.lobe & SR_LOBE_TRANSMISSION)
             eta_scale *= s.eta * s.eta;
@@ -271,8 +286,9 @@ static sr_spectrum walk(const struct guided *m, const struct sr_scene *scene, co
     }
 }
 
-static sr_spectrum guided_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
-                            struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
+static sr_spectrum guided_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start,
+                            const struct sr_sampler *sampler, struct sr_wavelengths *w, struct sr_hit *first,
+                            struct sr_worker *worker)
 {
     const struct guided *m = self;
     const struct shared *shared = worker->shared;
@@ -308,13 +324,15 @@ static void try_pair(const struct round *r, uint32_t i, struct tally *t, struct 
     // pixels by a net over the picture; replicates from the other end than the picture's
     struct sr_sampler where = sr_sampler_start(plan->sampler, plan->seed, UINT32_MAX, UINT32_MAX - 1, r->number, i);
     sr_u4 u = sr_sample4(&where, SR_USE_FILM);
-    uint32_t x = plan->x0 + (uint32_t)(u[0] * (float)plan->width), y = plan->y0 + (uint32_t)(u[1] * (float)plan->height);
+    uint32_t x = plan->x0 + (uint32_t)(u[0] * (float)plan->width),
+             y = plan->y0 + (uint32_t)(u[1] * (float)plan->height);
     uint32_t tile = (uint32_t)(u[0] * TILES) + TILES * (uint32_t)(u[1] * TILES);
     double importance = r->shared->weight[tile], total[2], saved = 0;
     for (uint32_t k = 0; k < 2; ++k) {
         struct lesson lesson = {.weight = 1, .importance = importance, .places = t->places};
         worker->held = &lesson;
-        struct sr_sampler sampler = sr_sampler_start(plan->sampler, plan->seed, x, y, UINT32_MAX - 2 * r->number - k, i);
+        struct sr_sampler sampler =
+            sr_sampler_start(plan->sampler, plan->seed, x, y, UINT32_MAX - 2 * r->number - k, i);
         plan->try(plan->picture, x, y, &sampler, worker);
         total[k] = lesson.total;
         if (!isfinite(lesson.square) || !isfinite(lesson.plain))
@@ -330,10 +348,12 @@ static void try_pair(const struct round *r, uint32_t i, struct tally *t, struct 
     double mean = 0.5 * (total[0] + total[1]);
     t->sum += mean;
     if (r->shared->mean > 0) {
-        __atomic_fetch_add(&r->shared->sum[tile], (uint64_t)fmin(fmax(mean / r->shared->mean, 0) * 0x1p20, 0x1p40), __ATOMIC_RELAXED);
+        __atomic_fetch_add(&r->shared->sum[tile], (uint64_t)fmin(fmax(mean / r->shared->mean, 0) * 0x1p20, 0x1p40),
+                           __ATOMIC_RELAXED);
         __atomic_fetch_add(&r->shared->count[tile], 1, __ATOMIC_RELAXED);
     }
-    t->variance += 0.5 * importance * (total[0] - total[1]) * (total[0] - total[1]); // what both have in common leaves no trace
+    t->variance +=
+        0.5 * importance * (total[0] - total[1]) * (total[0] - total[1]); // what both have in common leaves no trace
     t->saved += saved;
     t->pairs += 1;
 }
@@ -373,13 +393,15 @@ static struct tally try_round(const struct round *r)
     return sum;
 }
 
-/* After a round: how much variance counts in each tile; four paths as bright as the mean stand for what is not known yet. */
+/* After a round: how much variance counts in each tile; four paths as bright as the mean stand for what is not known
+ * yet. */
 static void weigh_tiles(struct shared *shared, const struct tally *t)
 {
     if (!(shared->mean > 0) && t->pairs)
         shared->mean = t->sum / (double)t->pairs;
     for (int i = 0; i < TILES * TILES; ++i) {
-        double mean = shared->mean * ((double)shared->sum[i] * 0x1p-20 + 4) / ((double)shared->count[i] + 4), all = 0.1 * shared->mean;
+        double mean = shared->mean * ((double)shared->sum[i] * 0x1p-20 + 4) / ((double)shared->count[i] + 4),
+               all = 0.1 * shared->mean;
         shared->weight[i] = shared->mean > 0 ? 1 / (mean * mean + all * all) : 1;
     }
 }
@@ -400,7 +422,8 @@ static struct verdict judge(const struct tally *t)
     return v;
 }
 
-static sr_status run_pilot(const struct sr_picture_plan *plan, struct shared *shared, uint32_t pairs, struct tally *last, struct sr_error *error)
+static sr_status run_pilot(const struct sr_picture_plan *plan, struct shared *shared, uint32_t pairs,
+                           struct tally *last, struct sr_error *error)
 {
     struct round r = {.plan = plan, .shared = shared, .pairs = FIRST_ROUND / 2};
     r.tallies = sr_alloc((pairs / CHUNK + 1) * sizeof *r.tallies);
@@ -409,7 +432,9 @@ static sr_status run_pilot(const struct sr_picture_plan *plan, struct shared *sh
     weigh_tiles(shared, &(struct tally){0});
     *last = try_round(&r);
     weigh_tiles(shared, last);
-    double light = last->lights ? last->light / (double)last->lights : 0, noise = last->noises ? last->noise / (double)last->noises * shared->weight[0] : 0; // all tiles weigh the same so far
+    double light = last->lights ? last->light / (double)last->lights : 0,
+           noise = last->noises ? last->noise / (double)last->noises * shared->weight[0]
+                                : 0; // all tiles weigh the same so far
     shared->guide = sr_guide_create(&last->places, light, noise);
     bool is_complete = shared->guide;
     for (uint32_t done = r.pairs; is_complete && done < pairs; done += r.pairs) {
@@ -433,13 +458,15 @@ static void end(void *p)
     sr_free(shared);
 }
 
-static sr_status begin(const void *self, const struct sr_scene *scene, const struct sr_picture_plan *plan, void **out, struct sr_error *error)
+static sr_status begin(const void *self, const struct sr_scene *scene, const struct sr_picture_plan *plan, void **out,
+                       struct sr_error *error)
 {
     const struct guided *m = self;
     (void)scene;
     double wanted = (double)m->pilot * plan->spp * plan->width * plan->height;
     if (m->guiding == GUIDE_OFF || (m->guiding == GUIDE_AUTO && wanted < LEAST_PILOT)) {
-        snprintf(plan->remark, SR_PICTURE_REMARK, "paths are not guided: %s", m->guiding == GUIDE_OFF ? "guiding is off" : "there are too few samples to learn from");
+        snprintf(plan->remark, SR_PICTURE_REMARK, "paths are not guided: %s",
+                 m->guiding == GUIDE_OFF ? "guiding is off" : "there are too few samples to learn from");
         return SR_OK;
     }
     uint32_t paths = wanted < LEAST_PILOT ? LEAST_PILOT : wanted > MOST_PILOT ? MOST_PILOT : (uint32_t)wanted;
@@ -455,7 +482,8 @@ static sr_status begin(const void *self, const struct sr_scene *scene, const str
     }
     struct verdict v = judge(&last);
     shared->is_guiding = m->guiding == GUIDE_ON || v.pays;
-    snprintf(plan->remark, SR_PICTURE_REMARK, "paths are %sguided: by a pilot of %u paths (%zu cells), guiding makes variance x %.3g, time x %.3g",
+    snprintf(plan->remark, SR_PICTURE_REMARK,
+             "paths are %sguided: by a pilot of %u paths (%zu cells), guiding makes variance x %.3g, time x %.3g",
              shared->is_guiding ? "" : "not ", paths, sr_guide_cell_count(shared->guide), v.variance, v.time);
     *out = shared;
     return SR_OK;

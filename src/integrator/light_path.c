@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Light tracing: the rendering equation from the other end. Particles leave the lights and tell the target, a picture or a
- * meter, of every surface that scatters them.
+/* Light tracing: the rendering equation from the other end. Particles leave the lights and tell the target, a picture
+ * or a meter, of every surface that scatters them.
  *
  *     I = integral We(x, w) L(x, w) |cos theta| dA dw = E[ sum over vertices beta f(w, wi) |cos theta| We V ]
  *
- * J. Arvo, Backward ray tracing, 1986; the adjoint: E. Veach, 1997, 4. Light that the sensor sees without scattering comes by its
- * own rays. Limits: nothing is seen in mirrors and through clear glass, for no particle leaves them straight toward the target;
- * paths end after 100 scatterings. */
+ * J. Arvo, Backward ray tracing, 1986; the adjoint: E. Veach, 1997, 4. Light that the sensor sees without scattering
+ * comes by its own rays. Limits: nothing is seen in mirrors and through clear glass, for no particle leaves them
+ * straight toward the target; paths end after 100 scatterings. */
 #include "integrator/vertices.h"
 
 struct light_path {

@@ -3,9 +3,10 @@
  *
  *     flux that arrives = flux that goes on + flux that is absorbed           [lm], at each wavelength of the particle
  *
- * What goes on is beta f |cos theta| / pdf, so that its expectation is the albedo's share; a particle survives by the share
- * of its strongest wavelength, as a photon would, and then carries on what it had: so sums balance only in the mean, and how
- * well they do tells something. Media take part; that they glow does not. Limits: shading normals that differ from the surface's neither absorb nor keep exactly. */
+ * What goes on is beta f |cos theta| / pdf, so that its expectation is the albedo's share; a particle survives by the
+ * share of its strongest wavelength, as a photon would, and then carries on what it had: so sums balance only in the
+ * mean, and how well they do tells something. Media take part; that they glow does not. Limits: shading normals that
+ * differ from the surface's neither absorb nor keep exactly. */
 #include "integrator/flight.h"
 #include "integrator/vertices.h"
 
@@ -22,10 +23,11 @@ static float strongest(sr_spectrum beta, const struct sr_wavelengths *w)
     return sr_wavelengths_secondary_terminated(w) ? beta[0] : sr_spectrum_max(beta);
 }
 
-/* Through a medium as far as `length`. What the throughput loses is absorbed, whether it is a chance or a weight; where chance has
- * it that more goes on, less than nothing is. false: nothing is left. */
-static bool go_through(const struct sr_medium *medium, float length, const struct sr_particle_watch *watch, const struct sr_wavelengths *w, struct sr_rng *rng,
-                       struct sr_ray *ray, struct sr_carried *c, bool *is_scattered)
+/* Through a medium as far as `length`. What the throughput loses is absorbed, whether it is a chance or a weight; where
+ * chance has it that more goes on, less than nothing is. false: nothing is left. */
+static bool go_through(const struct sr_medium *medium, float length, const struct sr_particle_watch *watch,
+                       const struct sr_wavelengths *w, struct sr_rng *rng, struct sr_ray *ray, struct sr_carried *c,
+                       bool *is_scattered)
 {
     struct sr_medium_at at;
     if (medium->model->is_uniform)
@@ -47,12 +49,14 @@ static bool go_through(const struct sr_medium *medium, float length, const struc
     return true;
 }
 
-void sr_follow_particle(const struct sr_scene *scene, const struct sr_sampler *sampler, struct sr_wavelengths *w, const struct sr_particle_watch *watch,
-                        struct sr_worker *worker)
+void sr_follow_particle(const struct sr_scene *scene, const struct sr_sampler *sampler, struct sr_wavelengths *w,
+                        const struct sr_particle_watch *watch, struct sr_worker *worker)
 {
     sr_u4 u = sr_sample4(sampler, SR_USE_LIGHT_PATH), u_place = sr_sample4(sampler, SR_USE_LIGHT_PATH + 1);
     struct sr_light_ray r;
-    if (!sr_lights_emit(sr_scene_lights(scene), u[2], (sr_vec2){u_place[0], u_place[1]}, (sr_vec2){u[0], u[1]}, w, &r) || !sr_has_come_in(scene, &r, worker))
+    if (!sr_lights_emit(sr_scene_lights(scene), u[2], (sr_vec2){u_place[0], u_place[1]}, (sr_vec2){u[0], u[1]}, w,
+                        &r) ||
+        !sr_has_come_in(scene, &r, worker))
         return;
     bool has_surface = sr_length2(r.from.n) > 0;
     struct sr_carried c = {.q = SR_ONE};

@@ -12,14 +12,17 @@ static const struct sr_param params[] = {
     {.name = NULL},
 };
 
-// the weight of light met by the surface's choice (pdf), had a light been chosen instead and then that direction (density)
-static float weight_of_hit(const struct sr_lights *lights, const struct sr_point *from, float pdf, uint32_t light, float density)
+// the weight of light met by the surface's choice (pdf), had a light been chosen instead and then that direction
+// (density)
+static float weight_of_hit(const struct sr_lights *lights, const struct sr_point *from, float pdf, uint32_t light,
+                           float density)
 {
     return density > 0 ? sr_mis_weight(pdf, sr_lights_pmf(lights, from, light) * density) : 1;
 }
 
 // light from outside the scene along an escaping ray
-static sr_spectrum escaping(const struct sr_scene *scene, const struct sr_point *from, float pdf, const struct sr_ray *ray, const struct sr_wavelengths *w)
+static sr_spectrum escaping(const struct sr_scene *scene, const struct sr_point *from, float pdf,
+                            const struct sr_ray *ray, const struct sr_wavelengths *w)
 {
     const struct sr_lights *lights = sr_scene_lights(scene);
     sr_spectrum L = SR_BLACK;
@@ -33,11 +36,13 @@ static sr_spectrum escaping(const struct sr_scene *scene, const struct sr_point 
     return L;
 }
 
-/* Light that s lets into a body at x comes out of it elsewhere: x, frame and bsdf are there from now on, s is how the path leaves
- * it, and light straight from lights is added to L. beta is that of x before s. false: the path ends. */
-static __attribute__((noinline)) bool emerge(const struct sr_scene *scene, const struct sr_bssrdf *b, const struct sr_sampler *sampler, uint32_t group,
-                                             struct sr_wavelengths *w, struct sr_worker *worker, struct sr_hit *x, struct sr_frame *frame,
-                                             struct sr_bsdf *bsdf, struct sr_bsdf_sample *s, sr_spectrum *beta, sr_spectrum *L)
+/* Light that s lets into a body at x comes out of it elsewhere: x, frame and bsdf are there from now on, s is how the
+ * path leaves it, and light straight from lights is added to L. beta is that of x before s. false: the path ends. */
+static __attribute__((noinline)) bool emerge(const struct sr_scene *scene, const struct sr_bssrdf *b,
+                                             const struct sr_sampler *sampler, uint32_t group, struct sr_wavelengths *w,
+                                             struct sr_worker *worker, struct sr_hit *x, struct sr_frame *frame,
+                                             struct sr_bsdf *bsdf, struct sr_bsdf_sample *s, sr_spectrum *beta,
+                                             sr_spectrum *L)
 {
     sr_u4 u_light, u_bsdf;
     sr_sample8(sampler, group + 1, &u_light, &u_bsdf);
@@ -47,7 +52,8 @@ static __attribute__((noinline)) bool emerge(const struct sr_scene *scene, const
     const sr_vec3 up = {0, 0, 1};
     struct sr_light_sample l;
     sr_spectrum L_direct;
-    if (sr_path_direct(sr_scene_lights(scene), &x->point, frame, bsdf, up, u_light, w, &l, &L_direct) && sr_unoccluded(scene, &x->point, &l, worker))
+    if (sr_path_direct(sr_scene_lights(scene), &x->point, frame, bsdf, up, u_light, w, &l, &L_direct) &&
+        sr_unoccluded(scene, &x->point, &l, worker))
         *L += *beta * L_direct;
     return sr_bsdf_sample(bsdf, up, u_bsdf[2], (sr_vec2){u_bsdf[0], u_bsdf[1]}, SR_RADIANCE, s);
 }
@@ -59,19 +65,22 @@ static inline uint32_t seed_of(const struct sr_sampler *sampler, uint32_t group)
 }
 
 /* has_footprints, has_subsurface: constants where the compiler is to leave out what they ask for. */
-SR_INLINE sr_spectrum follow(const struct sr_path *path, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
-                             struct sr_wavelengths *w, struct sr_hit *first, bool has_footprints, bool has_subsurface, struct sr_worker *worker)
+SR_INLINE sr_spectrum follow(const struct sr_path *path, const struct sr_scene *scene,
+                             const struct sr_path_start *start, const struct sr_sampler *sampler,
+                             struct sr_wavelengths *w, struct sr_hit *first, bool has_footprints, bool has_subsurface,
+                             struct sr_worker *worker)
 {
     const struct sr_lights *lights = sr_scene_lights(scene);
     struct sr_ray ray = start->ray;
-    sr_spectrum L = SR_BLACK;   // radiance gathered so far                     [W m^-2 sr^-1 nm^-1]
-    sr_spectrum beta = SR_ONE;  // product of f |cos theta_i| / pdf             [1]
-    float pdf = INFINITY;       // density that chose ray.d                     [1/sr]; infinite: no light sampling could compete
-    float eta_scale = 1;        // what refraction has made of beta, and will undo [1]
-    bool is_scattered = false;  // by more than mirrors and clear glass
-    float width = 0;            // of the path at its last surface              [m]
+    sr_spectrum L = SR_BLACK;  // radiance gathered so far                     [W m^-2 sr^-1 nm^-1]
+    sr_spectrum beta = SR_ONE; // product of f |cos theta_i| / pdf             [1]
+    float pdf =
+        INFINITY; // density that chose ray.d                     [1/sr]; infinite: no light sampling could compete
+    float eta_scale = 1;       // what refraction has made of beta, and will undo [1]
+    bool is_scattered = false; // by more than mirrors and clear glass
+    float width = 0;           // of the path at its last surface              [m]
     float spread = has_footprints ? 0.5f * (sr_length(start->dddx) + sr_length(start->dddy)) : 0; // [1]
-    struct sr_hit hits[2];      // where the path is now, and where it was scattered last
+    struct sr_hit hits[2]; // where the path is now, and where it was scattered last
     struct sr_hit *x = &hits[0], *from = &hits[1];
     bool is_seen = first || has_footprints; // where the path is, all of it
     int passed = 0;
@@ -97,7 +106,11 @@ SR_INLINE sr_spectrum follow(const struct sr_path *path, const struct sr_scene *
         if (x->light != SR_NO_LIGHT) {
             sr_spectrum Le = sr_hit_Le(scene, x, sr_neg(ray.d), w);
             if (sr_spectrum_any(Le > 0.0f))
-                L += beta * Le * (isinf(pdf) ? 1 : weight_of_hit(lights, &from->point, pdf, x->light, sr_light_density(lights->lights[x->light], &from->point, ray.d, &x->point)));
+                L += beta * Le *
+                     (isinf(pdf)
+                          ? 1
+                          : weight_of_hit(lights, &from->point, pdf, x->light,
+                                          sr_light_density(lights->lights[x->light], &from->point, ray.d, &x->point)));
         }
         if (!x->material) { // an interface: the path goes on as it was
             if (++passed > 1000)
@@ -129,9 +142,11 @@ SR_INLINE sr_spectrum follow(const struct sr_path *path, const struct sr_scene *
         struct sr_bsdf bsdf;
         struct sr_frame frame;
         if (SR_LIKELY(x->is_plain))
-            sr_material_shade_plain(x->material, x->lambert, &x->point, sr_neg(ray.d), u_bsdf[3], seed_of(sampler, group), w, &bsdf, &frame);
+            sr_material_shade_plain(x->material, x->lambert, &x->point, sr_neg(ray.d), u_bsdf[3],
+                                    seed_of(sampler, group), w, &bsdf, &frame);
         else
-            sr_material_shade(x->material, &x->point, sr_neg(ray.d), u_bsdf[3], seed_of(sampler, group), w, &bsdf, &frame);
+            sr_material_shade(x->material, &x->point, sr_neg(ray.d), u_bsdf[3], seed_of(sampler, group), w, &bsdf,
+                              &frame);
         if (!bsdf.model) {
             if (++passed > 1000)
                 return L;
@@ -142,8 +157,8 @@ SR_INLINE sr_spectrum follow(const struct sr_path *path, const struct sr_scene *
         if (wo.z == 0)
             return L;
 
-        // integral f L |cos theta_i| dwi, by the lights and by the surface: L(x, wi) is the next turn of this loop. Both, too,
-        // are drawn before the shadow ray is traced
+        // integral f L |cos theta_i| dwi, by the lights and by the surface: L(x, wi) is the next turn of this loop.
+        // Both, too, are drawn before the shadow ray is traced
         struct sr_light_sample l;
         sr_spectrum L_direct;
         bool is_lit = (sr_bsdf_is_diffuse(&bsdf) || sr_bsdf_lobes(&bsdf) & (SR_LOBE_DIFFUSE | SR_LOBE_GLOSSY)) &&
@@ -155,11 +170,15 @@ SR_INLINE sr_spectrum follow(const struct sr_path *path, const struct sr_scene *
         if (!goes_on)
             return L;
         struct sr_bssrdf body;
-        if (SR_UNLIKELY(has_subsurface) && s.lobe & SR_LOBE_TRANSMISSION && sr_material_bssrdf(x->material, &x->point, sr_neg(ray.d), u_bsdf[3], seed_of(sampler, group), w, &body) &&
-            !emerge(scene, &body, sampler, SR_USE_SUBSURFACE + 3 * (uint32_t)bounce, w, worker, x, &frame, &bsdf, &s, &beta, &L))
+        if (SR_UNLIKELY(has_subsurface) && s.lobe & SR_LOBE_TRANSMISSION &&
+            sr_material_bssrdf(x->material, &x->point, sr_neg(ray.d), u_bsdf[3], seed_of(sampler, group), w, &body) &&
+            !emerge(scene, &body, sampler, SR_USE_SUBSURFACE + 3 * (uint32_t)bounce, w, worker, x, &frame, &bsdf, &s,
+                    &beta, &L))
             return L;
         beta *= s.f * (sr_abs_cos_theta(s.wi) / s.pdf);
-        pdf = s.lobe & SR_LOBE_SPECULAR ? INFINITY : s.pdf_is_proportional ? sr_bsdf_pdf(&bsdf, wo, s.wi, SR_RADIANCE) : s.pdf;
+        pdf = s.lobe & SR_LOBE_SPECULAR ? INFINITY
+              : s.pdf_is_proportional   ? sr_bsdf_pdf(&bsdf, wo, s.wi, SR_RADIANCE)
+                                        : s.pdf;
         if (s.lobe & SR_LOBE_TRANSMISSION)
             eta_scale *= s.eta * s.eta;
         is_scattered |= !(s.lobe & SR_LOBE_SPECULAR);
@@ -183,11 +202,13 @@ SR_INLINE sr_spectrum follow(const struct sr_path *path, const struct sr_scene *
     }
 }
 
-static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
-                          struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
+static sr_spectrum path_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start,
+                          const struct sr_sampler *sampler, struct sr_wavelengths *w, struct sr_hit *first,
+                          struct sr_worker *worker)
 {
     const struct sr_path *path = self;
-    bool has_footprints = sr_scene_has_footprints(scene), has_subsurface = path->subsurface && sr_scene_has_subsurface(scene);
+    bool has_footprints = sr_scene_has_footprints(scene),
+         has_subsurface = path->subsurface && sr_scene_has_subsurface(scene);
     if (SR_LIKELY(!first && !has_footprints && !has_subsurface))
         return follow(path, scene, start, sampler, w, NULL, false, false, worker);
     return follow(path, scene, start, sampler, w, first, has_footprints, has_subsurface, worker);
@@ -198,4 +219,11 @@ bool sr_path_enters_bodies(const void *self)
     return ((const struct sr_path *)self)->subsurface;
 }
 
-const struct sr_integrator_model sr_integrator_path = {.name = "path", .text = "paths from the sensor; lights and BSDFs sampled and weighed by the power heuristic", .params = params, .size = sizeof(struct sr_path), .L = path_L, .knows_receivers = true, .enters_bodies = sr_path_enters_bodies};
+const struct sr_integrator_model sr_integrator_path = {
+    .name = "path",
+    .text = "paths from the sensor; lights and BSDFs sampled and weighed by the power heuristic",
+    .params = params,
+    .size = sizeof(struct sr_path),
+    .L = path_L,
+    .knows_receivers = true,
+    .enters_bodies = sr_path_enters_bodies};

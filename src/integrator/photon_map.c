@@ -5,8 +5,8 @@
  *
  *     r(i+1)^2 = r(i)^2 (i + alpha) / (i + 1),  alpha = 2/3
  *
- * C. Knaus & M. Zwicker, Progressive photon mapping: a probabilistic approach, 2011, eq. 20: bias and variance of the mean over all
- * maps both vanish. Limit: at any number of maps caustics are blurred by about the last radius. */
+ * C. Knaus & M. Zwicker, Progressive photon mapping: a probabilistic approach, 2011, eq. 20: bias and variance of the
+ * mean over all maps both vanish. Limit: at any number of maps caustics are blurred by about the last radius. */
 #define _POSIX_C_SOURCE 200809L
 #include "integrator/photon_map.h"
 
@@ -25,7 +25,7 @@ struct slot {
     enum state state;
     bool has_failed;
     uint32_t replicate, number;
-    int users;          // threads that hold it or build it
+    int users; // threads that hold it or build it
     uint64_t last_use;
     uint64_t next_chunk, done_chunks;
     struct sr_array *chunks; // of struct sr_photon, one array each
@@ -42,7 +42,8 @@ struct sr_photon_maps {
     struct slot slots[];
 };
 
-struct sr_photon_maps *sr_photon_maps_create(const struct sr_scene *scene, const struct sr_photon_plan *plan, const struct sr_picture_plan *picture)
+struct sr_photon_maps *sr_photon_maps_create(const struct sr_scene *scene, const struct sr_photon_plan *plan,
+                                             const struct sr_picture_plan *picture)
 {
     int slots = picture->threads + MAPS_OF_A_REPLICATE; // each thread holds one at most
     struct sr_photon_maps *m = sr_alloc(sizeof *m + (size_t)slots * sizeof m->slots[0]);
@@ -83,23 +84,31 @@ void sr_photon_maps_destroy(struct sr_photon_maps *m)
 
 /* ---- particles ---- */
 
-static bool keep(struct sr_array *photons, const struct sr_hit *x, sr_vec3 d, sr_spectrum flux, uint32_t scatterings, const struct sr_wavelengths *w)
+static bool keep(struct sr_array *photons, const struct sr_hit *x, sr_vec3 d, sr_spectrum flux, uint32_t scatterings,
+                 const struct sr_wavelengths *w)
 {
     struct sr_photon *p = sr_array_push(photons, sizeof *p);
     if (!p)
         return false;
-    *p = (struct sr_photon){.flux = flux, .p = x->point.p, .wi = sr_neg(d), .n = x->point.n, .scatterings = scatterings,
+    *p = (struct sr_photon){.flux = flux,
+                            .p = x->point.p,
+                            .wi = sr_neg(d),
+                            .n = x->point.n,
+                            .scatterings = scatterings,
                             .is_single = sr_wavelengths_secondary_terminated(w)};
     return true;
 }
 
 /* One path from the lights, as long as it meets nothing but mirrors and clear glass; false: no memory. */
-static bool trace(const struct sr_photon_maps *m, const struct sr_photon_map *map, const struct sr_sampler *sampler, struct sr_array *photons, struct sr_worker *worker)
+static bool trace(const struct sr_photon_maps *m, const struct sr_photon_map *map, const struct sr_sampler *sampler,
+                  struct sr_array *photons, struct sr_worker *worker)
 {
     struct sr_wavelengths w = map->w;
     sr_u4 u = sr_sample4(sampler, SR_USE_LIGHT_PATH), u_place = sr_sample4(sampler, SR_USE_LIGHT_PATH + 1);
     struct sr_light_ray r;
-    if (!sr_lights_emit(sr_scene_lights(m->scene), u[2], (sr_vec2){u_place[0], u_place[1]}, (sr_vec2){u[0], u[1]}, &w, &r) || !sr_has_come_in(m->scene, &r, worker))
+    if (!sr_lights_emit(sr_scene_lights(m->scene), u[2], (sr_vec2){u_place[0], u_place[1]}, (sr_vec2){u[0], u[1]}, &w,
+                        &r) ||
+        !sr_has_come_in(m->scene, &r, worker))
         return true;
     float cos_theta = sr_length2(r.from.n) > 0 ? fabsf(sr_dot(r.from.n, r.w)) : 1;
     sr_spectrum beta = r.L * (cos_theta / (r.pmf * r.pdf_area * r.pdf_direction));
@@ -117,7 +126,8 @@ static bool trace(const struct sr_photon_maps *m, const struct sr_photon_map *ma
             uint32_t group = SR_USE_LIGHT_PATH + 2 + 2 * scatterings;
             sr_sample8(sampler, group, &u_survive, &u_bsdf);
             sr_point_set_footprint(&x.point, (sr_vec3){0, 0, 0}, (sr_vec3){0, 0, 0});
-            sr_material_shade(x.material, &x.point, sr_neg(ray.d), u_bsdf[3], sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu, &w, &bsdf, &frame);
+            sr_material_shade(x.material, &x.point, sr_neg(ray.d), u_bsdf[3],
+                              sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu, &w, &bsdf, &frame);
         }
         if (!bsdf.model) {
             ++passed;
@@ -125,11 +135,14 @@ static bool trace(const struct sr_photon_maps *m, const struct sr_photon_map *ma
             continue;
         }
         worker->vertices += 1;
-        if (scatterings > 0 && sr_bsdf_lobes(&bsdf) & (SR_LOBE_DIFFUSE | SR_LOBE_GLOSSY) && !keep(photons, &x, ray.d, beta, scatterings, &w))
+        if (scatterings > 0 && sr_bsdf_lobes(&bsdf) & (SR_LOBE_DIFFUSE | SR_LOBE_GLOSSY) &&
+            !keep(photons, &x, ray.d, beta, scatterings, &w))
             return false;
         sr_vec3 back = sr_to_local(&frame, sr_neg(ray.d));
         struct sr_bsdf_sample s;
-        if (back.z == 0 || !sr_bsdf_sample(&bsdf, back, u_bsdf[2], (sr_vec2){u_bsdf[0], u_bsdf[1]}, SR_IMPORTANCE, &s) || !(s.lobe & SR_LOBE_SPECULAR))
+        if (back.z == 0 ||
+            !sr_bsdf_sample(&bsdf, back, u_bsdf[2], (sr_vec2){u_bsdf[0], u_bsdf[1]}, SR_IMPORTANCE, &s) ||
+            !(s.lobe & SR_LOBE_SPECULAR))
             return true;
         sr_vec3 out = sr_to_world(&frame, s.wi);
         float in_cos = fabsf(sr_dot(x.point.n, ray.d)), out_cos = fabsf(sr_dot(x.point.n, out));
@@ -149,7 +162,8 @@ static bool trace_chunk(const struct sr_photon_maps *m, struct slot *s, uint64_t
     uint64_t end = (chunk + 1) * CHUNK < m->plan.paths ? (chunk + 1) * CHUNK : m->plan.paths;
     for (uint64_t i = chunk * CHUNK; i < end; ++i) {
         uint64_t index = (uint64_t)s->number * m->plan.paths + i; // all maps of a replicate are parts of one net
-        struct sr_sampler sampler = sr_sampler_start(m->picture.sampler, m->picture.seed, UINT32_MAX, (uint32_t)(index >> 32), s->replicate, (uint32_t)index);
+        struct sr_sampler sampler = sr_sampler_start(m->picture.sampler, m->picture.seed, UINT32_MAX,
+                                                     (uint32_t)(index >> 32), s->replicate, (uint32_t)index);
         if (!trace(m, &s->map, &sampler, &s->chunks[chunk], worker))
             return false;
     }
@@ -187,7 +201,8 @@ static bool build_grid(const struct sr_photon_maps *m, struct slot *s)
     map->cells = sr_alloc(((size_t)cells + 2) * sizeof *map->cells);
     if (count >= UINT32_MAX || !map->photons || !map->cells)
         return false;
-    uint32_t *begin = map->cells + 1; // filling moves the beginning of each cell to its end, which is the beginning of the next
+    uint32_t *begin =
+        map->cells + 1; // filling moves the beginning of each cell to its end, which is the beginning of the next
     for (uint64_t i = 0; i < m->chunk_count; ++i)
         for (size_t k = 0; k < s->chunks[i].count; ++k)
             ++begin[cell_of(map, ((struct sr_photon *)s->chunks[i].data)[k].p)];
@@ -209,7 +224,8 @@ static bool build_grid(const struct sr_photon_maps *m, struct slot *s)
     return true;
 }
 
-void sr_photons_near(const struct sr_photon_map *map, sr_vec3 p, void (*f)(void *user, const struct sr_photon *photon), void *user)
+void sr_photons_near(const struct sr_photon_map *map, sr_vec3 p, void (*f)(void *user, const struct sr_photon *photon),
+                     void *user)
 {
     float side = 2 * map->radius, r2 = map->radius * map->radius;
     sr_vec3 corner = {p.x / side - 0.5f, p.y / side - 0.5f, p.z / side - 0.5f};
@@ -243,8 +259,10 @@ static void begin(struct sr_photon_maps *m, struct slot *s, uint32_t replicate, 
         r2 *= (i - 1.0 / 3) / i;
     s->map.radius = (float)sqrt(r2);
     s->map.paths = m->plan.paths;
-    struct sr_sampler sampler = sr_sampler_start(m->picture.sampler, m->picture.seed, UINT32_MAX, UINT32_MAX, replicate, number);
-    s->map.w = sr_wavelengths_draw(&m->picture.law, m->picture.jitter_lambda ? sr_sample4(&sampler, SR_USE_FILM)[2] : 0.5f);
+    struct sr_sampler sampler =
+        sr_sampler_start(m->picture.sampler, m->picture.seed, UINT32_MAX, UINT32_MAX, replicate, number);
+    s->map.w =
+        sr_wavelengths_draw(&m->picture.law, m->picture.jitter_lambda ? sr_sample4(&sampler, SR_USE_FILM)[2] : 0.5f);
     sr_wavelengths_know(&s->map.w, sr_scene_lights(m->scene)->white);
     s->chunks = sr_alloc((m->chunk_count + 1) * sizeof *s->chunks);
     s->has_failed = !s->chunks;
@@ -293,10 +311,12 @@ static struct slot *find(struct sr_photon_maps *m, uint32_t replicate, uint32_t 
     return oldest;
 }
 
-const struct sr_photon_map *sr_photon_map_of(struct sr_photon_maps *m, uint32_t replicate, uint32_t sample, struct sr_worker *worker)
+const struct sr_photon_map *sr_photon_map_of(struct sr_photon_maps *m, uint32_t replicate, uint32_t sample,
+                                             struct sr_worker *worker)
 {
     // where every replicate visits all its samples in one go, several share a map, so that all maps of it are at hand
-    uint32_t each = m->picture.per_replicate ? (m->picture.per_replicate + MAPS_OF_A_REPLICATE - 1) / MAPS_OF_A_REPLICATE : 1;
+    uint32_t each =
+        m->picture.per_replicate ? (m->picture.per_replicate + MAPS_OF_A_REPLICATE - 1) / MAPS_OF_A_REPLICATE : 1;
     uint32_t number = sample / each;
     struct slot *held = worker->held;
     if (!held || held->replicate != replicate || held->number != number) {

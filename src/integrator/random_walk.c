@@ -15,8 +15,9 @@ static const struct sr_param params[] = {
     {.name = NULL},
 };
 
-static sr_spectrum random_walk_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
-                                 struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
+static sr_spectrum random_walk_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start,
+                                 const struct sr_sampler *sampler, struct sr_wavelengths *w, struct sr_hit *first,
+                                 struct sr_worker *worker)
 {
     const struct random_walk *walk = self;
     struct sr_ray ray = start->ray;
@@ -48,7 +49,8 @@ static sr_spectrum random_walk_L(const void *self, const struct sr_scene *scene,
         }
         worker->vertices += 1;
         sr_vec3 wi = sr_warp_uniform_sphere((sr_vec2){u[0], u[1]});
-        beta *= sr_bsdf_f(&bsdf, sr_to_local(&frame, sr_neg(ray.d)), wi, SR_RADIANCE) * (sr_abs_cos_theta(wi) * 4 * SR_PI);
+        beta *=
+            sr_bsdf_f(&bsdf, sr_to_local(&frame, sr_neg(ray.d)), wi, SR_RADIANCE) * (sr_abs_cos_theta(wi) * 4 * SR_PI);
         if (!(sr_spectrum_max(beta) > 0))
             return L;
         ray = sr_leave(&x.point, sr_to_world(&frame, wi));
@@ -59,7 +61,15 @@ static sr_spectrum random_walk_L(const void *self, const struct sr_scene *scene,
 static const char *blind(const void *self, const struct sr_scene *scene)
 {
     (void)self;
-    return sr_has_delta_lights(scene) ? "point, spot and distant lights are missing: no direction that is drawn leads to them" : NULL;
+    return sr_has_delta_lights(scene)
+               ? "point, spot and distant lights are missing: no direction that is drawn leads to them"
+               : NULL;
 }
 
-const struct sr_integrator_model sr_integrator_random_walk = {.name = "randomwalk", .text = "directions even over the sphere; light where a ray happens to meet it", .params = params, .size = sizeof(struct random_walk), .L = random_walk_L, .blind = blind};
+const struct sr_integrator_model sr_integrator_random_walk = {
+    .name = "randomwalk",
+    .text = "directions even over the sphere; light where a ray happens to meet it",
+    .params = params,
+    .size = sizeof(struct random_walk),
+    .L = random_walk_L,
+    .blind = blind};

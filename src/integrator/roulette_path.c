@@ -1,19 +1,21 @@
 /* SPDX-License-Identifier: MIT */
-/* Path tracing whose paths live on by what a pilot has learned: what those bring that go on from such a place, and what it takes.
+/* Path tracing whose paths live on by what a pilot has learned: what those bring that go on from such a place, and what
+ * it takes.
  *
  *     survive = c beta sqrt(E[X^2] / C) sqrt(C_all / V_all)        within [least_survival, 1]
  *
- * X is what one path brings that goes on there with a throughput of 1, C what it costs; V_all and C_all are the variance and the cost of a
- * sample, the former relative to how bright the picture is. With c = 1 that makes variance times cost least for independent samples (A. Rath,
- * P. Grittmann, S. Herholz, P. Weier & P. Slusallek, EARS: efficiency-aware Russian roulette and splitting, 2022, eq. 19; going by radiance: J.
- * Vorba & J. Krivanek, Adjoint-driven Russian roulette and splitting, 2016); those of a net differ less than the pilot's independent
- * ones, and the lots' noise does not become less by that, so fewer die here. Who survives carries the others' share, so each sample is
- * unbiased whatever has been learned.
+ * X is what one path brings that goes on there with a throughput of 1, C what it costs; V_all and C_all are the
+ * variance and the cost of a sample, the former relative to how bright the picture is. With c = 1 that makes variance
+ * times cost least for independent samples (A. Rath, P. Grittmann, S. Herholz, P. Weier & P. Slusallek, EARS:
+ * efficiency-aware Russian roulette and splitting, 2022, eq. 19; going by radiance: J. Vorba & J. Krivanek,
+ * Adjoint-driven Russian roulette and splitting, 2016); those of a net differ less than the pilot's independent ones,
+ * and the lots' noise does not become less by that, so fewer die here. Who survives carries the others' share, so each
+ * sample is unbiased whatever has been learned.
  *
- * The pilot takes a share of the picture's samples on top, with numbers of its own, and throws them away; what it learns is frozen
- * before the picture's first sample. Its last round follows plain paths as well, from the same places on the sensor; where the variance
- * times the cost is not less than theirs, path.c does the picture. Limits: as path.c's without translucent bodies; a meter, which has no
- * pilot, is read by plain paths. */
+ * The pilot takes a share of the picture's samples on top, with numbers of its own, and throws them away; what it
+ * learns is frozen before the picture's first sample. Its last round follows plain paths as well, from the same places
+ * on the sensor; where the variance times the cost is not less than theirs, path.c does the picture. Limits: as
+ * path.c's without translucent bodies; a meter, which has no pilot, is read by plain paths. */
 #include "integrator/guide.h"
 #include "integrator/path.h"
 #include "integrator/vertices.h"
@@ -21,16 +23,16 @@
 #include <stdio.h>
 
 enum { LEARNED_AUTO, LEARNED_ON, LEARNED_OFF };
-enum { MOST_RETURNS = 64 }; // of a path
+enum { MOST_RETURNS = 64 };                                                  // of a path
 enum { MOST_PILOT = 1 << 21, LEAST_PILOT = 1 << 13, FIRST_ROUND = 1 << 11 }; // [paths]
-enum { CHUNK = 256 };       // [pairs of paths] that a thread takes at a time
+enum { CHUNK = 256 }; // [pairs of paths] that a thread takes at a time
 
 // a price list of what the pilot counts, so that its verdict depends on no clock
 enum { RAY_COST = 10, SHADOW_COST = 6, VERTEX_COST = 12, WALK_COST = 5 };
-static const double least_gain = 0.9;      // of variance times cost, for the lots to pay
-static const float boldness = 2;           // c
-static const float least_survival = 0.1f;  // what brings much rarely may have been missed
-static const double dark = 0.3;            // of the picture's mean: what is darker counts as if it were so bright
+static const double least_gain = 0.9;     // of variance times cost, for the lots to pay
+static const float boldness = 2;          // c
+static const float least_survival = 0.1f; // what brings much rarely may have been missed
+static const double dark = 0.3;           // of the picture's mean: what is darker counts as if it were so bright
 
 struct roulette {
     struct sr_path path;
@@ -40,9 +42,11 @@ struct roulette {
 
 static const struct sr_param params[] = {
     {SR_PARAM_INT, "maxdepth", "1", 0, 1e6, 5, offsetof(struct roulette, path.max_depth), "most scatterings of a path"},
-    {SR_PARAM_ENUM, "lightsampler", "1", 0, 3, 0, offsetof(struct roulette, path.light_sampler), "bvh|power|uniform|exhaustive"},
+    {SR_PARAM_ENUM, "lightsampler", "1", 0, 3, 0, offsetof(struct roulette, path.light_sampler),
+     "bvh|power|uniform|exhaustive"},
     {SR_PARAM_ENUM, "learned", "1", 0, 2, 0, offsetof(struct roulette, learned), "auto|on|off"},
-    {SR_PARAM_FLOAT, "pilot", "1", 0, 10, 0.06, offsetof(struct roulette, pilot), "samples of the pilot, for each sample of the picture"},
+    {SR_PARAM_FLOAT, "pilot", "1", 0, 10, 0.06, offsetof(struct roulette, pilot),
+     "samples of the pilot, for each sample of the picture"},
     {.name = NULL},
 };
 
@@ -87,7 +91,8 @@ static uint64_t cost_of(const struct sr_worker *w)
 }
 
 /* Once the path has ended: what came of each step. */
-static void learn(struct lesson *l, const struct shared *shared, sr_spectrum L, const struct sr_wavelengths *w, const struct sr_worker *worker)
+static void learn(struct lesson *l, const struct shared *shared, sr_spectrum L, const struct sr_wavelengths *w,
+                  const struct sr_worker *worker)
 {
     l->total = (double)mean_of(L, w);
     for (int i = 0; i < l->count; ++i) {
@@ -106,11 +111,12 @@ static void learn(struct lesson *l, const struct shared *shared, sr_spectrum L, 
 /* ---- a path ---- */
 
 /* The share of the paths at x that go on. */
-static float survival(const struct shared *shared, const struct sr_guide_cell *cell, int kind, sr_spectrum beta, float eta_scale, int bounce,
-                      const struct sr_wavelengths *w, float *rate, struct lesson *lesson)
+static float survival(const struct shared *shared, const struct sr_guide_cell *cell, int kind, sr_spectrum beta,
+                      float eta_scale, int bounce, const struct sr_wavelengths *w, float *rate, struct lesson *lesson)
 {
     if (bounce == 0 && shared->guide) { // the first surface tells how bright the picture is here
-        double bright = shared->rate > 0 ? (double)cell->mean[kind] : shared->mean, weight = 1 / (bright * bright + dark * dark * shared->mean * shared->mean);
+        double bright = shared->rate > 0 ? (double)cell->mean[kind] : shared->mean,
+               weight = 1 / (bright * bright + dark * dark * shared->mean * shared->mean);
         *rate = (float)(shared->rate * sqrt(weight));
         if (lesson)
             lesson->weight = weight;
@@ -123,8 +129,9 @@ static float survival(const struct shared *shared, const struct sr_guide_cell *c
     return survive < 1 ? sr_max(survive, least_survival) : 1;
 }
 
-static sr_spectrum walk(const struct roulette *m, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
-                        const struct shared *shared, struct lesson *lesson, struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
+static sr_spectrum walk(const struct roulette *m, const struct sr_scene *scene, const struct sr_path_start *start,
+                        const struct sr_sampler *sampler, const struct shared *shared, struct lesson *lesson,
+                        struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
 {
     const struct sr_lights *lights = sr_scene_lights(scene);
     bool has_footprints = sr_scene_has_footprints(scene);
@@ -139,7 +146,8 @@ static sr_spectrum walk(const struct roulette *m, const struct sr_scene *scene, 
         sr_u4 u_light, u_bsdf;
         sr_sample8(sampler, group, &u_light, &u_bsdf);
         struct sr_hit x;
-        bool is_hit = bounce == 0 && (first || has_footprints) ? sr_trace(scene, &ray, &x, worker) : sr_trace_bare(scene, &ray, &x, worker);
+        bool is_hit = bounce == 0 && (first || has_footprints) ? sr_trace(scene, &ray, &x, worker)
+                                                               : sr_trace_bare(scene, &ray, &x, worker);
         if (first && bounce == 0)
             *first = is_hit ? x : (struct sr_hit){.t = INFINITY};
         if (!is_hit || x.light != SR_NO_LIGHT) {
@@ -158,7 +166,8 @@ static sr_spectrum walk(const struct roulette *m, const struct sr_scene *scene, 
             }
             uint32_t seed = sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu; // random walks hash it
             if (SR_LIKELY(x.is_plain))
-                sr_material_shade_plain(x.material, x.lambert, &x.point, sr_neg(ray.d), u_bsdf[3], seed, w, &bsdf, &frame);
+                sr_material_shade_plain(x.material, x.lambert, &x.point, sr_neg(ray.d), u_bsdf[3], seed, w, &bsdf,
+                                        &frame);
             else
                 sr_material_shade(x.material, &x.point, sr_neg(ray.d), u_bsdf[3], seed, w, &bsdf, &frame);
         }
@@ -207,7 +216,9 @@ static sr_spectrum walk(const struct roulette *m, const struct sr_scene *scene, 
         beta *= s.f * (sr_abs_cos_theta(s.wi) / s.pdf);
         if (!(sr_spectrum_max(beta) > 0))
             return L;
-        pdf = s.lobe & SR_LOBE_SPECULAR ? INFINITY : s.pdf_is_proportional ? sr_bsdf_pdf(&bsdf, wo, s.wi, SR_RADIANCE) : s.pdf;
+        pdf = s.lobe & SR_LOBE_SPECULAR ? INFINITY
+              : s.pdf_is_proportional   ? sr_bsdf_pdf(&bsdf, wo, s.wi, SR_RADIANCE)
+                                        : s.pdf;
         if (s.lobe & SR_LOBE_TRANSMISSION)
             eta_scale *= s.eta * s.eta;
         is_scattered |= !(s.lobe & SR_LOBE_SPECULAR);
@@ -217,8 +228,9 @@ static sr_spectrum walk(const struct roulette *m, const struct sr_scene *scene, 
     }
 }
 
-static sr_spectrum roulette_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
-                              struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
+static sr_spectrum roulette_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start,
+                              const struct sr_sampler *sampler, struct sr_wavelengths *w, struct sr_hit *first,
+                              struct sr_worker *worker)
 {
     const struct roulette *m = self;
     const struct shared *shared = worker->shared;
@@ -252,14 +264,16 @@ struct round {
     struct tally *tallies; // of each chunk
 };
 
-/* Two paths from the same place on the sensor, of the same wavelengths: what they differ by is what the lots can change. */
+/* Two paths from the same place on the sensor, of the same wavelengths: what they differ by is what the lots can
+ * change. */
 static void try_pair(const struct round *r, uint32_t i, struct tally *t, struct sr_worker *worker)
 {
     const struct sr_picture_plan *plan = r->plan;
     // pixels by a net over the picture; replicates from the other end than the picture's
     struct sr_sampler where = sr_sampler_start(plan->sampler, plan->seed, UINT32_MAX, UINT32_MAX - 1, r->number, i);
     sr_u4 u = sr_sample4(&where, SR_USE_FILM);
-    uint32_t x = plan->x0 + (uint32_t)(u[0] * (float)plan->width), y = plan->y0 + (uint32_t)(u[1] * (float)plan->height);
+    uint32_t x = plan->x0 + (uint32_t)(u[0] * (float)plan->width),
+             y = plan->y0 + (uint32_t)(u[1] * (float)plan->height);
     struct sr_sampler sampler = sr_sampler_start(plan->sampler, plan->seed, x, y, UINT32_MAX - r->number, i);
     double total[2][2] = {{0}}, weight = 0;
     for (int plain = 0; plain <= r->compares; ++plain)
@@ -278,7 +292,8 @@ static void try_pair(const struct round *r, uint32_t i, struct tally *t, struct 
             t->brought2 += lesson.brought2;
             t->returns += lesson.returns;
         }
-    double of_lots = total[0][0] - total[0][1], of_plain = total[1][0] - total[1][1], mean = 0.5 * (total[0][0] + total[0][1]);
+    double of_lots = total[0][0] - total[0][1], of_plain = total[1][0] - total[1][1],
+           mean = 0.5 * (total[0][0] + total[0][1]);
     if (!isfinite(of_lots) || !isfinite(of_plain))
         return;
     t->sum += mean;
@@ -323,9 +338,10 @@ static struct tally try_round(const struct round *r)
     return sum;
 }
 
-/* The first round only finds the range of things, the second one is still by lots as plain paths have them, each later one by what
- * those before it have learned. */
-static sr_status run_pilot(const struct sr_picture_plan *plan, struct shared *shared, uint32_t pairs, struct tally *last, struct sr_error *error)
+/* The first round only finds the range of things, the second one is still by lots as plain paths have them, each later
+ * one by what those before it have learned. */
+static sr_status run_pilot(const struct sr_picture_plan *plan, struct shared *shared, uint32_t pairs,
+                           struct tally *last, struct sr_error *error)
 {
     struct round r = {.plan = plan, .shared = shared, .pairs = FIRST_ROUND / 2};
     r.tallies = sr_alloc((pairs / CHUNK + 1) * sizeof *r.tallies);
@@ -343,7 +359,8 @@ static sr_status run_pilot(const struct sr_picture_plan *plan, struct shared *sh
         r.compares = done + r.pairs >= pairs;
         *last = try_round(&r);
         is_complete = sr_guide_refine(shared->guide);
-        shared->rate = last->variance[0] > 0 ? (double)boldness * sqrt(0.5 * (double)last->cost[0] / last->variance[0]) : 0;
+        shared->rate =
+            last->variance[0] > 0 ? (double)boldness * sqrt(0.5 * (double)last->cost[0] / last->variance[0]) : 0;
     }
     sr_free(r.tallies);
     return is_complete ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for what roulette goes by");
@@ -357,13 +374,15 @@ static void end(void *p)
 }
 
 /* A picture's lots: by what has been learned where that makes variance times cost less, by the pilot's own counting. */
-static sr_status begin(const void *self, const struct sr_scene *scene, const struct sr_picture_plan *plan, void **out, struct sr_error *error)
+static sr_status begin(const void *self, const struct sr_scene *scene, const struct sr_picture_plan *plan, void **out,
+                       struct sr_error *error)
 {
     const struct roulette *m = self;
     (void)scene;
     double wanted = (double)m->pilot * plan->spp * plan->width * plan->height;
     if (m->learned == LEARNED_OFF || (m->learned == LEARNED_AUTO && wanted < LEAST_PILOT)) {
-        snprintf(plan->remark, SR_PICTURE_REMARK, "roulette goes by throughput: %s", m->learned == LEARNED_OFF ? "learning is off" : "there are too few samples to learn from");
+        snprintf(plan->remark, SR_PICTURE_REMARK, "roulette goes by throughput: %s",
+                 m->learned == LEARNED_OFF ? "learning is off" : "there are too few samples to learn from");
         return SR_OK;
     }
     uint32_t paths = wanted < LEAST_PILOT ? LEAST_PILOT : wanted > MOST_PILOT ? MOST_PILOT : (uint32_t)wanted;
@@ -377,18 +396,22 @@ static sr_status begin(const void *self, const struct sr_scene *scene, const str
         end(shared);
         return status;
     }
-    double variance = last.variance[1] > 0 ? last.variance[0] / last.variance[1] : 1, cost = last.cost[1] ? (double)last.cost[0] / (double)last.cost[1] : 1;
+    double variance = last.variance[1] > 0 ? last.variance[0] / last.variance[1] : 1,
+           cost = last.cost[1] ? (double)last.cost[0] / (double)last.cost[1] : 1;
     bool pays = last.variance[1] > 0 && variance * cost < least_gain;
     shared->is_on = m->learned == LEARNED_ON || pays;
-    snprintf(plan->remark, SR_PICTURE_REMARK, "roulette goes by %s: by a pilot of %u paths (%zu cells), learning makes variance x %.3g, time x %.3g",
-             shared->is_on ? "what has been learned" : "throughput", paths, sr_guide_cell_count(shared->guide), variance, cost);
+    snprintf(plan->remark, SR_PICTURE_REMARK,
+             "roulette goes by %s: by a pilot of %u paths (%zu cells), learning makes variance x %.3g, time x %.3g",
+             shared->is_on ? "what has been learned" : "throughput", paths, sr_guide_cell_count(shared->guide),
+             variance, cost);
     *out = shared;
     return SR_OK;
 }
 
 const struct sr_integrator_model sr_integrator_roulette_path = {
     .name = "roulettepath",
-    .text = "path, whose roulette goes by what a pilot has learned of what paths bring and what they cost, where that pays",
+    .text =
+        "path, whose roulette goes by what a pilot has learned of what paths bring and what they cost, where that pays",
     .params = params,
     .size = sizeof(struct roulette),
     .L = roulette_L,

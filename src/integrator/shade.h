@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What a ray has met: a surface that scatters, or one that only parts media, behind which the path goes on as it was. */
+/* What a ray has met: a surface that scatters, or one that only parts media, behind which the path goes on as it was.
+ */
 #ifndef SR_INTEGRATOR_SHADE_H
 #define SR_INTEGRATOR_SHADE_H
 
@@ -7,9 +8,10 @@
 
 enum { SR_MOST_PASSED = 1000 }; // surfaces that do not scatter, of one path
 
-/* The BSDF and the frame at x for a ray of direction d; false: nothing scatters there. u and seed choose what materials leave to
- * chance. */
-static inline bool sr_shade(struct sr_hit *x, sr_vec3 d, float u, uint32_t seed, struct sr_wavelengths *w, struct sr_bsdf *bsdf, struct sr_frame *frame)
+/* The BSDF and the frame at x for a ray of direction d; false: nothing scatters there. u and seed choose what materials
+ * leave to chance. */
+static inline bool sr_shade(struct sr_hit *x, sr_vec3 d, float u, uint32_t seed, struct sr_wavelengths *w,
+                            struct sr_bsdf *bsdf, struct sr_frame *frame)
 {
     bsdf->model = NULL;
     if (x->material)
@@ -18,7 +20,8 @@ static inline bool sr_shade(struct sr_hit *x, sr_vec3 d, float u, uint32_t seed,
 }
 
 /* The same in less time where the material is plain; the frame may be turned about its normal. */
-static inline bool sr_shade_plain(struct sr_hit *x, sr_vec3 d, float u, uint32_t seed, struct sr_wavelengths *w, struct sr_bsdf *bsdf, struct sr_frame *frame)
+static inline bool sr_shade_plain(struct sr_hit *x, sr_vec3 d, float u, uint32_t seed, struct sr_wavelengths *w,
+                                  struct sr_bsdf *bsdf, struct sr_frame *frame)
 {
     if (!SR_LIKELY(x->material && x->is_plain)) // no material looks at nothing, and is plain
         return sr_shade(x, d, u, seed, w, bsdf, frame);

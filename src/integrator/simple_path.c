@@ -13,13 +13,16 @@ struct simple_path {
 
 static const struct sr_param params[] = {
     {SR_PARAM_INT, "maxdepth", "1", 0, 1e6, 5, offsetof(struct simple_path, max_depth), "most scatterings of a path"},
-    {SR_PARAM_BOOL, "samplelights", "1", 0, 1, 1, offsetof(struct simple_path, sample_lights), "light by sampling the lights"},
-    {SR_PARAM_BOOL, "samplebsdf", "1", 0, 1, 1, offsetof(struct simple_path, sample_bsdf), "directions by the BSDF, else uniform"},
+    {SR_PARAM_BOOL, "samplelights", "1", 0, 1, 1, offsetof(struct simple_path, sample_lights),
+     "light by sampling the lights"},
+    {SR_PARAM_BOOL, "samplebsdf", "1", 0, 1, 1, offsetof(struct simple_path, sample_bsdf),
+     "directions by the BSDF, else uniform"},
     {.name = NULL},
 };
 
-static sr_spectrum simple_path_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
-                                 struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
+static sr_spectrum simple_path_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start,
+                                 const struct sr_sampler *sampler, struct sr_wavelengths *w, struct sr_hit *first,
+                                 struct sr_worker *worker)
 {
     const struct simple_path *path = self;
     const struct sr_lights *lights = sr_scene_lights(scene);
@@ -110,4 +113,10 @@ static const char *blind(const void *self, const struct sr_scene *scene)
                : NULL;
 }
 
-const struct sr_integrator_model sr_integrator_simple_path = {.name = "simplepath", .text = "paths from the sensor; lights sampled, or BSDFs, nothing weighed", .params = params, .size = sizeof(struct simple_path), .L = simple_path_L, .blind = blind};
+const struct sr_integrator_model sr_integrator_simple_path = {
+    .name = "simplepath",
+    .text = "paths from the sensor; lights sampled, or BSDFs, nothing weighed",
+    .params = params,
+    .size = sizeof(struct simple_path),
+    .L = simple_path_L,
+    .blind = blind};

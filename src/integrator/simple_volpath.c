@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* The plain twin of volumetric path tracing: photons of one wavelength, played out as they are.
  *
- *     P(absorbed) : P(scattered) : P(nothing) = sigma_a : sigma_s : m - sigma_t      at each collision against the majorant m
+ *     P(absorbed) : P(scattered) : P(nothing) = sigma_a : sigma_s : m - sigma_t      at each collision against the
+ * majorant m
  *
- * No light is sampled, nothing is weighed, no closed form is used: what it finds, volpath must find (Pharr, Jakob & Humphreys
- * 2023, 14.2.1, which knows no surfaces; here they scatter by their BSDFs). */
+ * No light is sampled, nothing is weighed, no closed form is used: what it finds, volpath must find (Pharr, Jakob &
+ * Humphreys 2023, 14.2.1, which knows no surfaces; here they scatter by their BSDFs). */
 #include "integrator/integrator.h"
 
 enum { GROUPS = 2, MOST_PASSED = 1000 };
@@ -14,14 +15,15 @@ struct simple_volpath {
 };
 
 static const struct sr_param params[] = {
-    {SR_PARAM_INT, "maxdepth", "1", 0, 1e6, 5, offsetof(struct simple_volpath, max_depth), "most scatterings of a path"},
+    {SR_PARAM_INT, "maxdepth", "1", 0, 1e6, 5, offsetof(struct simple_volpath, max_depth),
+     "most scatterings of a path"},
     {.name = NULL},
 };
 
 enum event { THROUGH, ABSORBED, SCATTERED };
 
-static enum event collide(const struct sr_medium *medium, const struct sr_ray *ray, float length, const struct sr_wavelengths *w, struct sr_rng *rng, float *t,
-                          struct sr_medium_at *at)
+static enum event collide(const struct sr_medium *medium, const struct sr_ray *ray, float length,
+                          const struct sr_wavelengths *w, struct sr_rng *rng, float *t, struct sr_medium_at *at)
 {
     struct sr_medium_walk walk;
     struct sr_medium_segment s;
@@ -42,8 +44,9 @@ static enum event collide(const struct sr_medium *medium, const struct sr_ray *r
     return THROUGH;
 }
 
-static sr_spectrum simple_volpath_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
-                                    struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
+static sr_spectrum simple_volpath_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start,
+                                    const struct sr_sampler *sampler, struct sr_wavelengths *w, struct sr_hit *first,
+                                    struct sr_worker *worker)
 {
     int max_depth = ((const struct simple_volpath *)self)->max_depth;
     struct sr_ray ray = start->ray;
@@ -79,7 +82,8 @@ static sr_spectrum simple_volpath_L(const void *self, const struct sr_scene *sce
         if (x.material) {
             if (bounce == 0)
                 sr_first_footprint(start, &x.point);
-            sr_material_shade(x.material, &x.point, sr_neg(ray.d), sr_rng_float(&rng), sr_rng_u32(&rng), w, &bsdf, &frame);
+            sr_material_shade(x.material, &x.point, sr_neg(ray.d), sr_rng_float(&rng), sr_rng_u32(&rng), w, &bsdf,
+                              &frame);
         }
         if (!bsdf.model) {
             if (++passed > MOST_PASSED)
@@ -103,10 +107,17 @@ static sr_spectrum simple_volpath_L(const void *self, const struct sr_scene *sce
 static const char *blind(const void *self, const struct sr_scene *scene)
 {
     (void)self;
-    return sr_has_delta_lights(scene) ? "point, spot and distant lights are missing: no direction that is drawn leads to them" : NULL;
+    return sr_has_delta_lights(scene)
+               ? "point, spot and distant lights are missing: no direction that is drawn leads to them"
+               : NULL;
 }
 
 const struct sr_integrator_model sr_integrator_simple_volpath = {
-    .name = "simplevolpath", .text = "photons of one wavelength through media, played out as they are", .params = params, .size = sizeof(struct simple_volpath),
-    .L = simple_volpath_L, .blind = blind, .knows_media = true,
+    .name = "simplevolpath",
+    .text = "photons of one wavelength through media, played out as they are",
+    .params = params,
+    .size = sizeof(struct simple_volpath),
+    .L = simple_volpath_L,
+    .blind = blind,
+    .knows_media = true,
 };

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* The strategies of sampling, and their densities, all as seen from x.
  *
- *     integral over directions   h(wi) L(x, wi) dwi,             h = f(wo, wi) |cos theta_i|, or a meter's response   (hemisphere form)
- *     integral over surfaces     h(wi) Le(y, -wi) V(x, y) |cos theta_y| / r^2 dA(y),       dwi = |cos theta_y| dA / r^2       (area form)
+ *     integral over directions   h(wi) L(x, wi) dwi,             h = f(wo, wi) |cos theta_i|, or a meter's response
+ * (hemisphere form) integral over surfaces     h(wi) Le(y, -wi) V(x, y) |cos theta_y| / r^2 dA(y),       dwi = |cos
+ * theta_y| dA / r^2       (area form)
  *
  * so a density by area p_A [1/m^2] is the density p_A r^2 / |cos theta_y| by solid angle [1/sr], which is all that
  * estimators see. E. Veach, Robust Monte Carlo methods for light transport simulation, 1997, ch. 8. */
@@ -67,10 +68,12 @@ static float per_steradian(float per_area, const struct sr_point *x, sr_vec3 wi,
 static float density_by_area(const struct sr_light_area *m, const struct sr_point *x, const struct sr_arrival *a)
 {
     float (*area_pdf)(const void *, uint32_t, const struct sr_point *) = m->shape.model->area_pdf;
-    return per_steradian(area_pdf ? area_pdf(m->shape.self, m->primitive, a->there) : 1 / m->area, x, a->world, a->there->p, a->there->n);
+    return per_steradian(area_pdf ? area_pdf(m->shape.self, m->primitive, a->there) : 1 / m->area, x, a->world,
+                         a->there->p, a->there->n);
 }
 
-static bool draw_by_area(const struct sr_light_area *m, const struct sr_point *x, sr_u4 u, float pmf, float *density, struct sr_shape_sample *s)
+static bool draw_by_area(const struct sr_light_area *m, const struct sr_point *x, sr_u4 u, float pmf, float *density,
+                         struct sr_shape_sample *s)
 {
     if (!m->shape.model->sample(m->shape.self, m->primitive, NULL, (sr_vec2){u[0], u[1]}, s))
         return false;
@@ -78,7 +81,8 @@ static bool draw_by_area(const struct sr_light_area *m, const struct sr_point *x
     return *density > 0;
 }
 
-static bool uniform_area_light(const struct sr_vertex *v, const struct sr_lights *lights, sr_u4 u, uint32_t *index, float *density, struct sr_shape_sample *s)
+static bool uniform_area_light(const struct sr_vertex *v, const struct sr_lights *lights, sr_u4 u, uint32_t *index,
+                               float *density, struct sr_shape_sample *s)
 {
     float pmf;
     return sr_lights_pick_by_area(lights, &v->hit.point, u[2], index, &pmf) &&
@@ -87,11 +91,14 @@ static bool uniform_area_light(const struct sr_vertex *v, const struct sr_lights
 
 static float uniform_area_density(const struct sr_vertex *v, const struct sr_lights *lights, const struct sr_arrival *a)
 {
-    return a->there ? sr_lights_pmf_by_area(lights, a->light) * density_by_area(lights->lights[a->light].self, &v->hit.point, a) : 0;
+    return a->there ? sr_lights_pmf_by_area(lights, a->light) *
+                          density_by_area(lights->lights[a->light].self, &v->hit.point, a)
+                    : 0;
 }
 
 /* Lights that have no surface draw themselves, in estimator.c: here only which, with what probability. */
-static bool light_area_light(const struct sr_vertex *v, const struct sr_lights *lights, sr_u4 u, uint32_t *index, float *density, struct sr_shape_sample *s)
+static bool light_area_light(const struct sr_vertex *v, const struct sr_lights *lights, sr_u4 u, uint32_t *index,
+                             float *density, struct sr_shape_sample *s)
 {
     if (!sr_lights_pick(lights, &v->hit.point, u[2], index, density))
         return false;
@@ -99,7 +106,8 @@ static bool light_area_light(const struct sr_vertex *v, const struct sr_lights *
     return light.model != &sr_light_area || draw_by_area(light.self, &v->hit.point, u, *density, density, s);
 }
 
-static float density_without_surface(const struct sr_vertex *v, const struct sr_lights *lights, const struct sr_arrival *a)
+static float density_without_surface(const struct sr_vertex *v, const struct sr_lights *lights,
+                                     const struct sr_arrival *a)
 {
     struct sr_light light = lights->lights[a->light];
     return a->is_delta ? 1 : light.model->pdf(light.self, &v->hit.point, a->world, NULL);
@@ -108,11 +116,12 @@ static float density_without_surface(const struct sr_vertex *v, const struct sr_
 static float light_area_density(const struct sr_vertex *v, const struct sr_lights *lights, const struct sr_arrival *a)
 {
     return sr_lights_pmf(lights, &v->hit.point, a->light) *
-           (a->there ? density_by_area(lights->lights[a->light].self, &v->hit.point, a) : density_without_surface(v, lights, a));
+           (a->there ? density_by_area(lights->lights[a->light].self, &v->hit.point, a)
+                     : density_without_surface(v, lights, a));
 }
 
-static bool light_solid_angle_light(const struct sr_vertex *v, const struct sr_lights *lights, sr_u4 u, uint32_t *index, float *density,
-                                    struct sr_shape_sample *s)
+static bool light_solid_angle_light(const struct sr_vertex *v, const struct sr_lights *lights, sr_u4 u, uint32_t *index,
+                                    float *density, struct sr_shape_sample *s)
 {
     if (!sr_lights_pick(lights, &v->hit.point, u[2], index, density))
         return false;
@@ -126,7 +135,8 @@ static bool light_solid_angle_light(const struct sr_vertex *v, const struct sr_l
     return *density > 0 && isfinite(*density);
 }
 
-static float light_solid_angle_density(const struct sr_vertex *v, const struct sr_lights *lights, const struct sr_arrival *a)
+static float light_solid_angle_density(const struct sr_vertex *v, const struct sr_lights *lights,
+                                       const struct sr_arrival *a)
 {
     float pmf = sr_lights_pmf(lights, &v->hit.point, a->light);
     if (!a->there)
@@ -136,14 +146,16 @@ static float light_solid_angle_density(const struct sr_vertex *v, const struct s
 }
 
 const struct sr_strategy sr_strategies[SR_STRATEGY_COUNT] = {
-    {"uniform-hemisphere", "directions with density 1 / 2 pi", .direction = uniform_direction, .density = uniform_density},
+    {"uniform-hemisphere", "directions with density 1 / 2 pi", .direction = uniform_direction,
+     .density = uniform_density},
     {"cosine-hemisphere", "directions with density cos / pi", .direction = cosine_direction, .density = cosine_density},
     {"bsdf", "directions as the surface scatters, or as the meter responds", .density = bsdf_density},
-    {"uniform-area", "points even over all that glows: 1 / A", .light = uniform_area_light, .density = uniform_area_density, .finds_unmet = true},
-    {"light-area", "one light by its share, points even over it", .light = light_area_light, .density = light_area_density, .finds_points = true,
-     .finds_unmet = true},
-    {"light-solid-angle", "one light by its share, directions even over its solid angle", .light = light_solid_angle_light,
-     .density = light_solid_angle_density, .finds_points = true, .finds_unmet = true},
+    {"uniform-area", "points even over all that glows: 1 / A", .light = uniform_area_light,
+     .density = uniform_area_density, .finds_unmet = true},
+    {"light-area", "one light by its share, points even over it", .light = light_area_light,
+     .density = light_area_density, .finds_points = true, .finds_unmet = true},
+    {"light-solid-angle", "one light by its share, directions even over its solid angle",
+     .light = light_solid_angle_light, .density = light_solid_angle_density, .finds_points = true, .finds_unmet = true},
 };
 
 const char *sr_strategy_name(int i)

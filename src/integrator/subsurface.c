@@ -3,14 +3,17 @@
  *
  *     L(po, wo) has the part  T(wo) INTEGRAL_A S_r(|po - pi|) INTEGRAL S_w(wi) L(pi, wi) |cos theta_i| dwi dA
  *
- * A point of the surface is found by a chord: an axis of the frame at po (the normal by 1/2, each tangent by 1/4), a wavelength, a
- * distance r of its profile and an angle give a line, and of its n meetings with the same material inside of the profile's
- * reach one is taken. The density of a point, by area, is the mean over the wavelengths i and the sum over the axes a,
+ * A point of the surface is found by a chord: an axis of the frame at po (the normal by 1/2, each tangent by 1/4), a
+ * wavelength, a distance r of its profile and an angle give a line, and of its n meetings with the same material inside
+ * of the profile's reach one is taken. The density of a point, by area, is the mean over the wavelengths i and the sum
+ * over the axes a,
  *
- *     pdf = 1/n SUM_i 1/8 SUM_a P_a pdf_i(distance of po and pi seen along a) |n_i . a|   [1/m^2], i within reach of pi alone
+ *     pdf = 1/n SUM_i 1/8 SUM_a P_a pdf_i(distance of po and pi seen along a) |n_i . a|   [1/m^2], i within reach of pi
+ * alone
  *
- * King, Kulla, Conty & Fajardo 2013; Pharr, Jakob & Humphreys 2016, 15.4.1. Once dispersion has ended the other wavelengths,
- * the first alone counts. Limits: the body is locally flat and deep; reach leaves out 1e-4 of a profile. */
+ * King, Kulla, Conty & Fajardo 2013; Pharr, Jakob & Humphreys 2016, 15.4.1. Once dispersion has ended the other
+ * wavelengths, the first alone counts. Limits: the body is locally flat and deep; reach leaves out 1e-4 of a profile.
+ */
 #include "integrator/integrator.h"
 
 enum { MOST_MEETINGS = 256 }; // of one chord
@@ -32,8 +35,9 @@ static float density(const struct sr_bssrdf *b, sr_vec3 d, sr_vec3 n, float dist
     return mean;
 }
 
-bool sr_subsurface_step(const struct sr_scene *scene, const struct sr_bssrdf *b, sr_u4 u, struct sr_hit *x, const struct sr_wavelengths *w,
-                        struct sr_worker *worker, sr_spectrum *beta, struct sr_bsdf *bsdf, struct sr_frame *frame)
+bool sr_subsurface_step(const struct sr_scene *scene, const struct sr_bssrdf *b, sr_u4 u, struct sr_hit *x,
+                        const struct sr_wavelengths *w, struct sr_worker *worker, sr_spectrum *beta,
+                        struct sr_bsdf *bsdf, struct sr_frame *frame)
 {
     int wavelengths = sr_wavelengths_secondary_terminated(w) ? 1 : SR_LAMBDA_COUNT;
     int i = (int)(u[3] * (float)wavelengths);

@@ -3,8 +3,8 @@
  *
  *     beta' = beta f(wi, wo) |cos theta_i'| |cos theta_o| / (|cos theta_i| pdf(wo))        [lm]
  *
- * theta' by the shading normal, theta by the geometric one, wi toward the light: the adjoint of the scattering that paths
- * from a sensor see (E. Veach, Robust Monte Carlo methods, 1997, 5.3). Carrying little, paths end by lot. */
+ * theta' by the shading normal, theta by the geometric one, wi toward the light: the adjoint of the scattering that
+ * paths from a sensor see (E. Veach, Robust Monte Carlo methods, 1997, 5.3). Carrying little, paths end by lot. */
 #include "integrator/vertices.h"
 
 float sr_vertex_density(float pdf_direction, const struct sr_vertex *from, const struct sr_vertex *to)
@@ -31,7 +31,8 @@ sr_spectrum sr_vertex_leaving(const struct sr_vertex *v, sr_vec3 out)
     return sr_bsdf_f(&v->bsdf, local, v->local_to_last, SR_RADIANCE) * (adjoint(v) * sr_vertex_cos(v, out));
 }
 
-static void set_footprint(const struct sr_walk *walk, const struct sr_hit *hit, int count, bool is_scattered, float *width, struct sr_point *x)
+static void set_footprint(const struct sr_walk *walk, const struct sr_hit *hit, int count, bool is_scattered,
+                          float *width, struct sr_point *x)
 {
     const struct sr_path_start *s = walk->start;
     if (walk->mode == SR_RADIANCE && count == 1) {
@@ -58,10 +59,12 @@ static float sensor_density(const struct sr_walk *walk, const struct sr_vertex *
     if (!target || !target->density)
         return 1;
     float distance = sr_length(sr_sub(v->x.p, walk->start->ray.o));
-    return target->density(target->self, walk->start->ray.d, distance, walk->start->ray.time) * sr_vertex_cos(v, walk->start->ray.d) / target->pixels;
+    return target->density(target->self, walk->start->ray.d, distance, walk->start->ray.time) *
+           sr_vertex_cos(v, walk->start->ray.d) / target->pixels;
 }
 
-int sr_walk_vertices(const struct sr_walk *walk, struct sr_ray ray, sr_spectrum beta, float pdf_direction, struct sr_vertex *v)
+int sr_walk_vertices(const struct sr_walk *walk, struct sr_ray ray, sr_spectrum beta, float pdf_direction,
+                     struct sr_vertex *v)
 {
     const struct sr_scene *scene = walk->scene;
     bool has_footprints = sr_scene_has_footprints(scene), is_scattered = false;
@@ -71,7 +74,8 @@ int sr_walk_vertices(const struct sr_walk *walk, struct sr_ray ray, sr_spectrum 
     struct sr_hit hit;
     for (;;) {
         bool is_seen = count == 1 && (walk->first || has_footprints);
-        bool is_hit = is_seen ? sr_trace(scene, &ray, &hit, walk->worker) : sr_trace_bare(scene, &ray, &hit, walk->worker);
+        bool is_hit =
+            is_seen ? sr_trace(scene, &ray, &hit, walk->worker) : sr_trace_bare(scene, &ray, &hit, walk->worker);
         if (count == 1 && walk->first && passed == 0)
             *walk->first = is_hit ? hit : (struct sr_hit){.t = INFINITY};
         if (walk->met && (!is_hit || hit.light != SR_NO_LIGHT))
@@ -104,8 +108,11 @@ int sr_walk_vertices(const struct sr_walk *walk, struct sr_ray ray, sr_spectrum 
         x->local_to_last = sr_to_local(&x->frame, x->to_last);
         x->beta = beta;
         x->is_outside = x->is_delta = false;
-        x->is_connectible = sr_bsdf_is_diffuse(&x->bsdf) || sr_bsdf_lobes(&x->bsdf) & (SR_LOBE_DIFFUSE | SR_LOBE_GLOSSY);
-        x->pdf = !from_light && count == 1 ? sensor_density(walk, x) : last->is_outside ? pdf_direction * sr_vertex_cos(x, ray.d) : sr_vertex_density(pdf_direction, last, x);
+        x->is_connectible =
+            sr_bsdf_is_diffuse(&x->bsdf) || sr_bsdf_lobes(&x->bsdf) & (SR_LOBE_DIFFUSE | SR_LOBE_GLOSSY);
+        x->pdf = !from_light && count == 1 ? sensor_density(walk, x)
+                 : last->is_outside        ? pdf_direction * sr_vertex_cos(x, ray.d)
+                                           : sr_vertex_density(pdf_direction, last, x);
         x->pdf_back = 0;
         if (x->local_to_last.z == 0)
             return count;
@@ -169,7 +176,8 @@ struct sr_light_path sr_light_vertices(const struct sr_walk *walk, struct sr_ver
     return (struct sr_light_path){r.light, sr_walk_vertices(walk, sr_leave(&v[0].x, r.w), beta, pdf, v)};
 }
 
-bool sr_vertex_seen(const struct sr_vertex *v, const struct sr_target *target, sr_vec2 u, struct sr_sensor_view *view, sr_spectrum *gain)
+bool sr_vertex_seen(const struct sr_vertex *v, const struct sr_target *target, sr_vec2 u, struct sr_sensor_view *view,
+                    sr_spectrum *gain)
 {
     if (!v->is_connectible || !target->connect(target->self, v->x.p, v->x.time, u, view))
         return false;
@@ -177,21 +185,23 @@ bool sr_vertex_seen(const struct sr_vertex *v, const struct sr_target *target, s
     return sr_spectrum_any(*gain != 0.0f);
 }
 
-bool sr_vertices_see(const struct sr_scene *scene, const struct sr_vertex *v, sr_vec3 p, sr_vec3 wi, float distance, struct sr_worker *worker)
+bool sr_vertices_see(const struct sr_scene *scene, const struct sr_vertex *v, sr_vec3 p, sr_vec3 wi, float distance,
+                     struct sr_worker *worker)
 {
     struct sr_light_sample s = {.wi = wi, .distance = distance, .p = p};
     return sr_unoccluded(scene, &v->x, &s, worker);
 }
 
-sr_spectrum sr_met_at_once(const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_hit *hit, sr_vec3 d,
-                           const struct sr_wavelengths *w)
+sr_spectrum sr_met_at_once(const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_hit *hit,
+                           sr_vec3 d, const struct sr_wavelengths *w)
 {
     const struct sr_lights *lights = sr_scene_lights(scene);
     sr_spectrum L = SR_BLACK;
     for (uint32_t k = 0; k < (hit ? 1 : lights->infinite_count); ++k) {
         uint32_t index = hit ? hit->light : lights->infinite[k];
         struct sr_light light = lights->lights[index];
-        sr_spectrum Le = hit ? light.model->Le(light.self, &hit->point, sr_neg(d), w) : sr_light_escaping(light, start->ray.o, d, w);
+        sr_spectrum Le =
+            hit ? light.model->Le(light.self, &hit->point, sr_neg(d), w) : sr_light_escaping(light, start->ray.o, d, w);
         float pdf = start->receiver ? light.model->pdf(light.self, start->receiver, d, hit ? &hit->point : NULL) : 0;
         L += pdf > 0 ? Le * sr_mis_weight(start->pdf, sr_lights_pmf(lights, start->receiver, index) * pdf) : Le;
     }

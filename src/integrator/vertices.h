@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* For the files of this room: paths kept as vertices, whether they begin at a sensor or at a light.
  *
- * Densities are by area [1/m^2], those of light from outside the scene by solid angle [1/sr] and, of the vertex after it, by
- * area across. A mirror or clear glass leaves no choice: its density is a delta function of the projected solid angle, which
- * stands in both directions' densities and is left out of both. */
+ * Densities are by area [1/m^2], those of light from outside the scene by solid angle [1/sr] and, of the vertex after
+ * it, by area across. A mirror or clear glass leaves no choice: its density is a delta function of the projected solid
+ * angle, which stands in both directions' densities and is left out of both. */
 #ifndef SR_INTEGRATOR_VERTICES_H
 #define SR_INTEGRATOR_VERTICES_H
 
@@ -38,8 +38,8 @@ typedef void sr_met_light(void *user, int count, const struct sr_hit *hit, sr_ve
 struct sr_walk {
     const struct sr_scene *scene;
     enum sr_transport mode;            // SR_RADIANCE: from a sensor
-    bool has_time; // of paths from lights; else it is drawn
-    float time;    // [1] share of the shutter interval
+    bool has_time;                     // of paths from lights; else it is drawn
+    float time;                        // [1] share of the shutter interval
     const struct sr_path_start *start; // sensor paths: the sensor's ray; light paths: a sensor's, or NULL
     const struct sr_sampler *sampler;
     uint32_t first_group; // of the random numbers of vertex 1
@@ -51,7 +51,8 @@ struct sr_walk {
     struct sr_hit *first; // NULL, or where the first surface is told
 };
 
-/* Follows the path that leaves v[0]; returns the number of vertices, v[0] included. pdf_direction: of ray.d, from a light. */
+/* Follows the path that leaves v[0]; returns the number of vertices, v[0] included. pdf_direction: of ray.d, from a
+ * light. */
 int sr_walk_vertices(const struct sr_walk *walk, struct sr_ray ray, sr_spectrum beta, float pdf_direction,
                      struct sr_vertex *v);
 
@@ -62,7 +63,8 @@ struct sr_light_path {
 };
 struct sr_light_path sr_light_vertices(const struct sr_walk *walk, struct sr_vertex *v);
 
-/* Where the numbers of light paths begin: a group for the light and the direction, one for the place, then two a vertex. */
+/* Where the numbers of light paths begin: a group for the light and the direction, one for the place, then two a
+ * vertex. */
 enum { SR_USE_LIGHT_PATH = 0x10000 };
 
 /* |cos| of the geometric normal; 1 where there is none. */
@@ -75,8 +77,8 @@ static inline float sr_vertex_cos(const struct sr_vertex *v, sr_vec3 w)
 /* Density by area at `to` of a direction's density at `from`; outside: by what the scene's border shows. */
 float sr_vertex_density(float pdf_direction, const struct sr_vertex *from, const struct sr_vertex *to);
 
-/* f(out, from) of a vertex of a light path, toward out, with what turns flux into what leaves: |cos theta'_from / cos theta_from|
- * |cos theta_out|, primed by the shading normal (Veach 1997, 5.3). */
+/* f(out, from) of a vertex of a light path, toward out, with what turns flux into what leaves: |cos theta'_from / cos
+ * theta_from| |cos theta_out|, primed by the shading normal (Veach 1997, 5.3). */
 sr_spectrum sr_vertex_leaving(const struct sr_vertex *v, sr_vec3 out);
 
 /* What a light path tells the target from v, but for visibility and weights; false: nothing. */

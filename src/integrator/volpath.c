@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* Volumetric path tracing: the equation of transfer between surfaces, the rendering equation at them, one scattering per turn.
+/* Volumetric path tracing: the equation of transfer between surfaces, the rendering equation at them, one scattering
+ * per turn.
  *
- *     L(x, -d) = integral_0^s T(t) [sigma_a Le + sigma_s integral p(d, w') L(y, w') dw'] dt + T(s) L_surface   [W m^-2 sr^-1 nm^-1]
+ *     L(x, -d) = integral_0^s T(t) [sigma_a Le + sigma_s integral p(d, w') L(y, w') dw'] dt + T(s) L_surface   [W m^-2
+ * sr^-1 nm^-1]
  *
- * y = x + t d. Light that arrives at a scattering is estimated twice, by a direction toward a light and by one that the matter
- * prefers; both kinds of paths, and those that any of the eight wavelengths would have drawn, are weighed by the balance
- * heuristic (Veach 1997; Miller, Georgiev & Jarosz 2019; docs/theory/volumes.md). Without media it is path.c. */
+ * y = x + t d. Light that arrives at a scattering is estimated twice, by a direction toward a light and by one that the
+ * matter prefers; both kinds of paths, and those that any of the eight wavelengths would have drawn, are weighed by the
+ * balance heuristic (Veach 1997; Miller, Georgiev & Jarosz 2019; docs/theory/volumes.md). Without media it is path.c.
+ */
 #include "integrator/flight.h"
 #include "integrator/path.h"
 
@@ -20,19 +23,23 @@ static const struct sr_param params[] = {
 struct walk {
     const struct sr_scene *scene;
     const struct sr_lights *lights;
-    struct sr_wavelengths w; // the path's own: what dispersion ends goes on being counted by those that look at the result
+    struct sr_wavelengths
+        w; // the path's own: what dispersion ends goes on being counted by those that look at the result
     struct sr_rng rng;
     struct sr_worker *worker;
     bool has_bodies; // that are to be gone through
 };
 
-static struct walk walk_of(const struct sr_path *path, const struct sr_scene *scene, const struct sr_sampler *sampler, const struct sr_wavelengths *w, struct sr_worker *worker)
+static struct walk walk_of(const struct sr_path *path, const struct sr_scene *scene, const struct sr_sampler *sampler,
+                           const struct sr_wavelengths *w, struct sr_worker *worker)
 {
-    return (struct walk){scene, sr_scene_lights(scene), *w, sr_rng_seed((uint64_t)sampler->key << 32 | sampler->sample, SR_USE_BOUNCE), worker,
-                         path->subsurface && sr_scene_has_subsurface(scene)};
+    return (struct walk){scene,  sr_scene_lights(scene),
+                         *w,     sr_rng_seed((uint64_t)sampler->key << 32 | sampler->sample, SR_USE_BOUNCE),
+                         worker, path->subsurface && sr_scene_has_subsurface(scene)};
 }
 
-// dispersion has left the first wavelength alone: it counts for all, since no other would have drawn what is still to come
+// dispersion has left the first wavelength alone: it counts for all, since no other would have drawn what is still to
+// come
 static void keep_first(struct sr_carried *c)
 {
     sr_spectrum *all[] = {&c->f, &c->q, &c->r};
@@ -50,15 +57,16 @@ static bool draw_light(const struct walk *k, const struct sr_point *x, sr_u4 u, 
 {
     uint32_t index;
     float pmf;
-    if (!sr_lights_pick(k->lights, x, u[2], &index, &pmf) || !sr_light_draw(k->lights->lights[index], x, (sr_vec2){u[0], u[1]}, &k->w, &a->l))
+    if (!sr_lights_pick(k->lights, x, u[2], &index, &pmf) ||
+        !sr_light_draw(k->lights->lights[index], x, (sr_vec2){u[0], u[1]}, &k->w, &a->l))
         return false;
     a->pdf = pmf * a->l.pdf;
     return a->pdf > 0;
 }
 
 // what of it is scattered on (value: f cos or p), were pdf the matter's own density of that direction
-static void receive(struct walk *k, const struct sr_point *x, const struct sr_medium *medium, const struct arriving *a, sr_spectrum value, float pdf,
-                    struct sr_carried *c)
+static void receive(struct walk *k, const struct sr_point *x, const struct sr_medium *medium, const struct arriving *a,
+                    sr_spectrum value, float pdf, struct sr_carried *c)
 {
     struct sr_passage p;
     value *= a->l.L;
@@ -69,7 +77,8 @@ static void receive(struct walk *k, const struct sr_point *x, const struct sr_me
         c->L += c->f * value * p.T * (1 / density);
 }
 
-static void receive_from_outside(const struct walk *k, const struct sr_point *from, const struct sr_ray *ray, struct sr_carried *c)
+static void receive_from_outside(const struct walk *k, const struct sr_point *from, const struct sr_ray *ray,
+                                 struct sr_carried *c)
 {
     bool has_rival = c->r[0] > 0;
     for (uint32_t i = 0; i < k->lights->infinite_count; ++i) {
@@ -83,7 +92,8 @@ static void receive_from_outside(const struct walk *k, const struct sr_point *fr
     }
 }
 
-static void receive_from_hit(const struct walk *k, const struct sr_point *from, sr_vec3 d, const struct sr_hit *x, struct sr_carried *c)
+static void receive_from_hit(const struct walk *k, const struct sr_point *from, sr_vec3 d, const struct sr_hit *x,
+                             struct sr_carried *c)
 {
     sr_spectrum Le = sr_hit_Le(k->scene, x, sr_neg(d), &k->w);
     if (!sr_spectrum_any(Le > 0.0f))
@@ -105,10 +115,11 @@ static bool survives(struct sr_carried *c, float eta_scale, int bounce, float u)
     return u < survive;
 }
 
-/* Light that s lets into a body at x comes out of it elsewhere, into the same medium: x, frame and bsdf are there from now on, and s
- * is how the path leaves it. false: the path ends. */
-static bool emerge(struct walk *k, const struct sr_bssrdf *body, const struct sr_sampler *sampler, uint32_t group, const struct sr_medium *medium,
-                   struct sr_hit *x, struct sr_frame *frame, struct sr_bsdf *bsdf, struct sr_bsdf_sample *s, struct sr_carried *c)
+/* Light that s lets into a body at x comes out of it elsewhere, into the same medium: x, frame and bsdf are there from
+ * now on, and s is how the path leaves it. false: the path ends. */
+static bool emerge(struct walk *k, const struct sr_bssrdf *body, const struct sr_sampler *sampler, uint32_t group,
+                   const struct sr_medium *medium, struct sr_hit *x, struct sr_frame *frame, struct sr_bsdf *bsdf,
+                   struct sr_bsdf_sample *s, struct sr_carried *c)
 {
     sr_u4 u_light, u_scatter;
     sr_sample8(sampler, group + 1, &u_light, &u_scatter);
@@ -126,7 +137,8 @@ static bool emerge(struct walk *k, const struct sr_bssrdf *body, const struct sr
     return sr_bsdf_sample(bsdf, up, u_scatter[2], (sr_vec2){u_scatter[0], u_scatter[1]}, SR_RADIANCE, s);
 }
 
-static sr_spectrum walk(struct walk *k, int max_depth, const struct sr_path_start *start, const struct sr_sampler *sampler, struct sr_hit *first)
+static sr_spectrum walk(struct walk *k, int max_depth, const struct sr_path_start *start,
+                        const struct sr_sampler *sampler, struct sr_hit *first)
 {
     struct sr_ray ray = start->ray;
     const struct sr_medium *medium = start->medium, *known = NULL;
@@ -137,7 +149,7 @@ static sr_spectrum walk(struct walk *k, int max_depth, const struct sr_path_star
     bool has_footprints = sr_scene_has_footprints(k->scene);
     float width = 0, spread = has_footprints ? 0.5f * (sr_length(start->dddx) + sr_length(start->dddy)) : 0;
     struct sr_point from = {.time = ray.time}; // where the path was scattered last
-    float depth = 0;                           // optical depth that the first wavelength may go until the next scattering
+    float depth = 0; // optical depth that the first wavelength may go until the next scattering
     int passed = 0;
     if (start->receiver) {
         from = *start->receiver;
@@ -169,7 +181,9 @@ static sr_spectrum walk(struct walk *k, int max_depth, const struct sr_path_star
 
         // on the way there
         float t;
-        enum sr_flight flight = medium ? sr_fly(medium, &ray, is_hit ? x.t : INFINITY, &k->w, &k->rng, &depth, &at, &c, &t) : SR_FLIGHT_THROUGH;
+        enum sr_flight flight = medium
+                                    ? sr_fly(medium, &ray, is_hit ? x.t : INFINITY, &k->w, &k->rng, &depth, &at, &c, &t)
+                                    : SR_FLIGHT_THROUGH;
         if (flight == SR_FLIGHT_LOST)
             return c.L;
         if (flight == SR_FLIGHT_SCATTERED) {
@@ -210,7 +224,8 @@ static sr_spectrum walk(struct walk *k, int max_depth, const struct sr_path_star
                 first->point = x.point;
             bool was_whole = !sr_wavelengths_secondary_terminated(&k->w);
             if (x.is_plain)
-                sr_material_shade_plain(x.material, x.lambert, &x.point, sr_neg(ray.d), u_scatter[3], seed, &k->w, &bsdf, &frame);
+                sr_material_shade_plain(x.material, x.lambert, &x.point, sr_neg(ray.d), u_scatter[3], seed, &k->w,
+                                        &bsdf, &frame);
             else
                 sr_material_shade(x.material, &x.point, sr_neg(ray.d), u_scatter[3], seed, &k->w, &bsdf, &frame);
             if (was_whole && sr_wavelengths_secondary_terminated(&k->w))
@@ -259,8 +274,9 @@ static sr_spectrum walk(struct walk *k, int max_depth, const struct sr_path_star
     }
 }
 
-static sr_spectrum volpath_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
-                             struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
+static sr_spectrum volpath_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start,
+                             const struct sr_sampler *sampler, struct sr_wavelengths *w, struct sr_hit *first,
+                             struct sr_worker *worker)
 {
     if (!sr_scene_has_media(scene))
         return sr_integrator_path.L(self, scene, start, sampler, w, first, worker);
@@ -269,8 +285,8 @@ static sr_spectrum volpath_L(const void *self, const struct sr_scene *scene, con
 }
 
 /* reading = integral response L dwi, by the lights and by the receiver. */
-static sr_spectrum gather(const void *self, const struct sr_scene *scene, const struct sr_receiver *receiver, const struct sr_sampler *sampler,
-                          struct sr_wavelengths *w, struct sr_worker *worker)
+static sr_spectrum gather(const void *self, const struct sr_scene *scene, const struct sr_receiver *receiver,
+                          const struct sr_sampler *sampler, struct sr_wavelengths *w, struct sr_worker *worker)
 {
     struct walk k = walk_of(self, scene, sampler, w, worker);
     const struct sr_point *x = &receiver->x;
@@ -283,10 +299,12 @@ static sr_spectrum gather(const void *self, const struct sr_scene *scene, const 
         float response = receiver->response(receiver->self, wi);
         struct sr_ray ray = sr_leave(x, a.l.wi);
         if (response != 0)
-            receive(&k, x, sr_scene_medium_at(scene, &ray), &a, SR_BLACK + response, receiver->pdf(receiver->self, wi), &c);
+            receive(&k, x, sr_scene_medium_at(scene, &ray), &a, SR_BLACK + response, receiver->pdf(receiver->self, wi),
+                    &c);
     }
     sr_vec3 wi;
-    float pdf = receiver->sample(receiver->self, u, &wi), response = pdf > 0 ? receiver->response(receiver->self, wi) : 0;
+    float pdf = receiver->sample(receiver->self, u, &wi),
+          response = pdf > 0 ? receiver->response(receiver->self, wi) : 0;
     if (response == 0)
         return c.L;
     struct sr_path_start start = {.ray = sr_leave(x, sr_to_world(&receiver->frame, wi)), .receiver = x, .pdf = pdf};
@@ -295,6 +313,12 @@ static sr_spectrum gather(const void *self, const struct sr_scene *scene, const 
 }
 
 const struct sr_integrator_model sr_integrator_volpath = {
-    .name = "volpath", .text = "path through media, too: null collisions, all wavelengths weighed", .params = params, .size = sizeof(struct sr_path),
-    .L = volpath_L, .gather = gather, .knows_media = true, .enters_bodies = sr_path_enters_bodies,
+    .name = "volpath",
+    .text = "path through media, too: null collisions, all wavelengths weighed",
+    .params = params,
+    .size = sizeof(struct sr_path),
+    .L = volpath_L,
+    .gather = gather,
+    .knows_media = true,
+    .enters_bodies = sr_path_enters_bodies,
 };

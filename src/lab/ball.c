@@ -3,9 +3,10 @@
  *
  *     L(p, wo) = INTEGRAL f(wo, wi) L_sky(wi) |cos_theta_i| d wi       [1 of the sky's unit, per wavelength]
  *
- * The ball is of unit radius and convex: what leaves it upward from a point meets the sky, what goes inside meets the wall
- * again, at most 32 times. The round light is sampled by itself and by the BSDF, weighed by the balance heuristic (Veach &
- * Guibas 1995). All light has the spectrum of D65. Tones: Y (1 + Y / 16) / (1 + Y), Y times 2.2 (Reinhard et al. 2002), then sRGB. */
+ * The ball is of unit radius and convex: what leaves it upward from a point meets the sky, what goes inside meets the
+ * wall again, at most 32 times. The round light is sampled by itself and by the BSDF, weighed by the balance heuristic
+ * (Veach & Guibas 1995). All light has the spectrum of D65. Tones: Y (1 + Y / 16) / (1 + Y), Y times 2.2 (Reinhard et
+ * al. 2002), then sRGB. */
 #include "lab/private.h"
 
 struct ball {

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Beams of light: a direction, a cone or the whole hemisphere; their solid angles and the names of what lies between two.
+/* Beams of light: a direction, a cone or the whole hemisphere; their solid angles and the names of what lies between
+ * two.
  *
  *     Omega = INTEGRAL cos theta d omega = pi sin^2 h cos theta of a cone of half angle h above the horizon    [sr]
  *
- * and pi of the hemisphere: the projected solid angle. F. E. Nicodemus et al., Geometrical considerations and nomenclature for
- * reflectance, NBS Monograph 160, 1977. */
+ * and pi of the hemisphere: the projected solid angle. F. E. Nicodemus et al., Geometrical considerations and
+ * nomenclature for reflectance, NBS Monograph 160, 1977. */
 #include "lab/reflect.h"
 
 #include <stdlib.h>

@@ -2,8 +2,8 @@
 /* The certificate of a specimen or of a model: sets of parameters are looked at, in parallel, and the worst is told.
  *
  * Statistical tests share one significance: with T tests in all, each may fail with the probability significance / T
- * (Bonferroni), so that a sound model fails its certificate with less than the significance asked for. What every set shows
- * a little of, none alone would prove: lost samples and the bias of the light are also summed over all sets. */
+ * (Bonferroni), so that a sound model fails its certificate with less than the significance asked for. What every set
+ * shows a little of, none alone would prove: lost samples and the bias of the light are also summed over all sets. */
 #include "lab/certificate.h"
 
 #include <stdio.h>

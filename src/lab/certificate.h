@@ -132,7 +132,8 @@ void lab_sensitivity(const struct subject *s, sr_vec3 wo, sr_vec3 wi, enum sr_tr
 /* The difference of two values beyond the slack, relative to the larger; NaN counts as 1. */
 double lab_apart(double a, double b, double slack);
 /* Beyond z deviations, what a mean of bounded summands may be off by: ln(2 / p) times the largest share of a single one
- * (Bernstein 1924, with the largest that was met for the bound). Means of few bright walks are not normally distributed. */
+ * (Bernstein 1924, with the largest that was met for the bound). Means of few bright walks are not normally
+ * distributed. */
 static inline double lab_bernstein(const struct certifying *c, double largest)
 {
     return log(2 / c->p) * largest;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Floats measured by doubles: f and pdf against the same model compiled in double precision, with the same parameters and
- * the same directions.
+/* Floats measured by doubles: f and pdf against the same model compiled in double precision, with the same parameters
+ * and the same directions.
  *
- * What counts is what the model loses by its own arithmetic: the part of the deviation that a change of the directions by
- * a few roundings does not explain. Where f is below some 1e-4 of a white Lambertian, its digits do not matter. */
+ * What counts is what the model loses by its own arithmetic: the part of the deviation that a change of the directions
+ * by a few roundings does not explain. Where f is below some 1e-4 of a white Lambertian, its digits do not matter. */
 #include "lab/certificate.h"
 
 #define NOTHING 3e-5 // [1/sr]

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* The energy that a certificate looks for: the directional albedo, on a grid of directions and then where it is largest.
+/* The energy that a certificate looks for: the directional albedo, on a grid of directions and then where it is
+ * largest.
  *
  *     E(wo) = INTEGRAL f(wo, wi) |cos_theta_i| dwi = mean of f |cos_theta_i| / pdf over samples    [1], at most 1
  *
- * in the form for importance, delta lobes included. The grid and the search (golden section over theta_o) take samples that
- * fill the square evenly (Hammersley 1960), so that E is smooth in wo; the verdict falls on fresh random ones, by
+ * in the form for importance, delta lobes included. The grid and the search (golden section over theta_o) take samples
+ * that fill the square evenly (Hammersley 1960), so that E is smooth in wo; the verdict falls on fresh random ones, by
  * their standard error, because a maximum of noisy values is too large. Where the sampler never looks, energy would be
  * overlooked here: that is what the support and the light are checked for. */
 #include "lab/certificate.h"
@@ -66,9 +67,9 @@ static void estimate(struct certifying *c, sr_vec3 wo, uint32_t n, struct sr_tal
     c->findings->evaluations += n;
 }
 
-/* Whether the albedo is above the limit, by n samples. Samples that all weigh the same but for rare ones that are lost (and
- * weigh nothing) may hold no lost one: their spread is 0, their mean too high. By what n samples can miss, ln(1/p) of the
- * largest, more of them are asked. */
+/* Whether the albedo is above the limit, by n samples. Samples that all weigh the same but for rare ones that are lost
+ * (and weigh nothing) may hold no lost one: their spread is 0, their mean too high. By what n samples can miss, ln(1/p)
+ * of the largest, more of them are asked. */
 static bool exceeds(struct certifying *c, sr_vec3 wo, int k, uint32_t n, double *mean, double *error)
 {
     enum { MORE = 64 };
@@ -164,7 +165,7 @@ void lab_check_energy(struct certifying *c)
     bool is_above = exceeds(c, viewer(theta, best_phi, best_below), wavelength, fresh, &mean, &error);
     char set[100];
     lab_describe(s, wavelength, set, sizeof set);
-    lab_find(c, CHECK_ENERGY, mean, is_above, "E = %.6g +- %.2g at theta_o %.4g%s, phi %.4g deg; %s",
-             mean, error, theta, best_below ? " from below" : "", best_phi * 180 / M_PI, set);
+    lab_find(c, CHECK_ENERGY, mean, is_above, "E = %.6g +- %.2g at theta_o %.4g%s, phi %.4g deg; %s", mean, error,
+             theta, best_below ? " from below" : "", best_phi * 180 / M_PI, set);
     check_closed_form(c, fresh);
 }

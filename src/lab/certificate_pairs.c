@@ -5,9 +5,9 @@
  *     adjoint             f(a, b) = f*(b, a) across it, f in the form for radiance, f* for importance (Veach 1997, 5.2)
  *     support             pdf(a, b) > 0 wherever f(a, b) > 0, or light is lost
  *
- * Floats of narrow lobes have few digits: two values that ought to be equal may differ by 0.2 %, or by what f changes when
- * the coordinates of a direction change by 2e-7 (two or three roundings). What is reported is the excess over that change, as a
- * share of the larger value. */
+ * Floats of narrow lobes have few digits: two values that ought to be equal may differ by 0.2 %, or by what f changes
+ * when the coordinates of a direction change by 2e-7 (two or three roundings). What is reported is the excess over that
+ * change, as a share of the larger value. */
 #include "lab/certificate.h"
 
 #include <string.h>
@@ -139,9 +139,9 @@ static void check_reciprocity(struct certifying *c, sr_vec3 wo, sr_vec3 wi)
 
 #define UNSEEN 3e-4 // [1/sr] a thousandth of white paper
 
-/* f itself is random: the mean difference over seeds, as deviations of its error. Far from the lobes of narrow slopes f is
- * the sum of rare bright walks, one in 1e6 of them at times, which 4000 do not meet: what is less than UNSEEN is judged by
- * check_exchange, whose summands are bounded. */
+/* f itself is random: the mean difference over seeds, as deviations of its error. Far from the lobes of narrow slopes f
+ * is the sum of rare bright walks, one in 1e6 of them at times, which 4000 do not meet: what is less than UNSEEN is
+ * judged by check_exchange, whose summands are bounded. */
 static void check_mean_reciprocity(struct certifying *c, sr_vec3 wo, sr_vec3 wi)
 {
     struct subject *s = c->subject;
@@ -160,17 +160,19 @@ static void check_mean_reciprocity(struct certifying *c, sr_vec3 wo, sr_vec3 wi)
         sr_tally_add(&sum, (double)(sr_spectrum_mean(f) + sr_spectrum_mean(g)) / 2);
     }
     double error = sr_tally_standard_error(&difference), z = error > 0 ? difference.mean / error : 0;
-    double share = fmax(fabs(difference.mean) - fmax(c->z * error + lab_bernstein(c, largest), UNSEEN), 0) / fmax(sum.mean, UNSEEN);
+    double share = fmax(fabs(difference.mean) - fmax(c->z * error + lab_bernstein(c, largest), UNSEEN), 0) /
+                   fmax(sum.mean, UNSEEN);
     char set[100];
     lab_describe(s, 0, set, sizeof set);
     lab_find(c, check, share, share > LAB_EQUAL,
-             "means of 4000 walks: %.4g of f = %.4g at theta %.4g and %.4g deg, z = %.2f; %s", difference.mean, sum.mean,
-             lab_theta_deg(wo), lab_theta_deg(wi), z, set);
+             "means of 4000 walks: %.4g of f = %.4g at theta %.4g and %.4g deg, z = %.2f; %s", difference.mean,
+             sum.mean, lab_theta_deg(wo), lab_theta_deg(wi), z, set);
 }
 
 /* What a sends to b, b sends to a: for a by the cosine law and b drawn from it, weight = f |cos_theta_b| / pdf,
  *
- *     E[ weight (h(a, b) - h(b, a)) ] = 1 / pi INTEGRAL INTEGRAL f(a, b) (h(a, b) - h(b, a)) |cos_theta_a| |cos_theta_b| da db = 0
+ *     E[ weight (h(a, b) - h(b, a)) ] = 1 / pi INTEGRAL INTEGRAL f(a, b) (h(a, b) - h(b, a)) |cos_theta_a|
+ * |cos_theta_b| da db = 0
  *
  * for every h. The second term is drawn in the form for importance. Weights of walks are at most about 1. */
 static void check_exchange(struct certifying *c)

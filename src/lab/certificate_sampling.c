@@ -1,21 +1,23 @@
 /* SPDX-License-Identifier: MIT */
-/* What a certificate finds by statistics: that samples fall as the density says, and that the light they carry is the light
- * that f describes.
+/* What a certificate finds by statistics: that samples fall as the density says, and that the light they carry is the
+ * light that f describes.
  *
- * The sphere is two squares: the concentric map of a disk (Shirley & Chiu 1997) with |z| = (1 - r^2)^2, in which the horizon
- * is the edge and wide (densities may end a little above it), and the normal no singularity. Cells follow the sampler: a first run of samples
- * divides them until each holds few, and they are divided toward the mirror direction and straight back too, where a lobe
- * could be that is never drawn. The density is integrated over each cell by adaptive Gauss-Legendre rules, in double.
+ * The sphere is two squares: the concentric map of a disk (Shirley & Chiu 1997) with |z| = (1 - r^2)^2, in which the
+ * horizon is the edge and wide (densities may end a little above it), and the normal no singularity. Cells follow the
+ * sampler: a first run of samples divides them until each holds few, and they are divided toward the mirror direction
+ * and straight back too, where a lobe could be that is never drawn. The density is integrated over each cell by
+ * adaptive Gauss-Legendre rules, in double.
  *
  *     normalisation   INTEGRAL pdf dwi <= 1
  *     lost            samples that are not drawn, or mirrored, are as many as the density leaves over: 1 - INTEGRAL pdf
  *     sampling        chi2 = SUM (O - E)^2 / (E + e^2) over cells, e the error of the integral (Pearson 1900)
- *     light           mean of f |cos_theta_i| g / pdf over samples = INTEGRAL f |cos_theta_i| g dwi, for g = 1, wi.x, wi.z;
- *                     the integral by random points in each cell, a stratified estimate with an error of its own
+ *     light           mean of f |cos_theta_i| g / pdf over samples = INTEGRAL f |cos_theta_i| g dwi, for g = 1, wi.x,
+ * wi.z; the integral by random points in each cell, a stratified estimate with an error of its own
  *
- * Limits: a lobe narrower than 1e-4 rad off these directions that the sampler never draws is not found. Where the samples
- * of many cells crowd on a ridge that is much narrower than the cell, no quadrature of this size resolves the density: such
- * viewing directions are left out (bsdf of slopes 1e-4 by 1; the law that a sample's pdf is pdf() is still checked). */
+ * Limits: a lobe narrower than 1e-4 rad off these directions that the sampler never draws is not found. Where the
+ * samples of many cells crowd on a ridge that is much narrower than the cell, no quadrature of this size resolves the
+ * density: such viewing directions are left out (bsdf of slopes 1e-4 by 1; the law that a sample's pdf is pdf() is
+ * still checked). */
 #include "lab/certificate.h"
 
 #include <string.h>

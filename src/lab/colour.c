@@ -4,8 +4,8 @@
  *     rho_v = INTEGRAL rho(l) S(l) V(l) dl / INTEGRAL S(l) V(l) dl               [unit of rho]
  *     X = INTEGRAL R(l) S(l) xbar(l) dl / INTEGRAL S(l) ybar(l) dl, …            [1]
  *
- * with the reflectance factor R, from 360 to 830 nm by sums over 1 nm; rho is known every 5 nm and linear between, which is
- * enough for paints and metals and coarse for thick interference films. CIE 15:2018; observer CIE 1931. */
+ * with the reflectance factor R, from 360 to 830 nm by sums over 1 nm; rho is known every 5 nm and linear between,
+ * which is enough for paints and metals and coarse for thick interference films. CIE 15:2018; observer CIE 1931. */
 #include "lab/lab.h"
 
 enum { STEP = 5, KNOTS = 95 }; // [nm]

@@ -7,8 +7,8 @@
  * T is the metric; k runs over pairs of directions and wavelengths. Parameters are held in their table's range by
  * p = lo + (hi - lo) (1 + sin t) / 2, or the same of log p where the range spans decades (F. James, MINUIT, 1975); the
  * uncertainties come back from t by dp/dt. Levenberg & Marquardt by MINPACK's lmdif (Moré, Garbow & Hillstrom 1980).
- * The residuals of a fit are mostly the model's misfit, not noise: the uncertainties say how sharply the minimum is known,
- * as if the misfit were scatter. */
+ * The residuals of a fit are mostly the model's misfit, not noise: the uncertainties say how sharply the minimum is
+ * known, as if the misfit were scatter. */
 #include "lab/lab.h"
 
 #include <cminpack.h>

@@ -24,10 +24,10 @@ struct sr_specimen {
     } parts[SR_SPECIMEN_PARTS];
 };
 
-/* Reads words: MODEL [name=value …], or a file of measured data, or SCENE.pbrt:MATERIAL; parts are joined by "+", and a part
- * may begin with a weight: .3*MODEL. A value is a number, for spectra also a name (metal-Au-eta), a file of "nm value" lines, or
- * rgb:R,G,B or nm:value,nm:value,…. Unknown names and values out of range are errors that say what was expected.
- * Everything is kept in the arena. */
+/* Reads words: MODEL [name=value …], or a file of measured data, or SCENE.pbrt:MATERIAL; parts are joined by "+", and a
+ * part may begin with a weight: .3*MODEL. A value is a number, for spectra also a name (metal-Au-eta), a file of "nm
+ * value" lines, or rgb:R,G,B or nm:value,nm:value,…. Unknown names and values out of range are errors that say what was
+ * expected. Everything is kept in the arena. */
 sr_status sr_specimen_read(struct sr_arena *arena, int count, const char *const *words, struct sr_specimen *specimen,
                            struct sr_log log, struct sr_error *error);
 
@@ -41,8 +41,8 @@ void sr_specimen_at(const struct sr_specimen *specimen, sr_spectrum lambda, uint
 
 /* ---- the same models in double precision ---- */
 
-/* Every model's file is compiled a second time with double in place of float. The twin of a BSDF (of one model, or a sum)
- * has the parameters of its table; *twin is NULL where there is none (measured data). A parameter is a float; the
+/* Every model's file is compiled a second time with double in place of float. The twin of a BSDF (of one model, or a
+ * sum) has the parameters of its table; *twin is NULL where there is none (measured data). A parameter is a float; the
  * twin has either that number, or the shortest decimal that rounds to it: what somebody has typed. */
 struct sr_twin;
 enum sr_twin_numbers { SR_TWIN_SAME, SR_TWIN_DECIMAL };
@@ -50,7 +50,8 @@ sr_status sr_twin_make(struct sr_arena *arena, const struct sr_bsdf *bsdf, sr_sp
                        enum sr_twin_numbers numbers, const struct sr_twin **twin, struct sr_error *error);
 void sr_twin_f(const struct sr_twin *twin, const double wo[3], const double wi[3], enum sr_transport mode,
                double f[SR_LAMBDA_COUNT]); // [1/sr]
-double sr_twin_pdf(const struct sr_twin *twin, const double wo[3], const double wi[3], enum sr_transport mode); // [1/sr]
+double sr_twin_pdf(const struct sr_twin *twin, const double wo[3], const double wi[3],
+                   enum sr_transport mode); // [1/sr]
 
 /* ---- reflectance between solid angles (Nicodemus et al. 1977) ---- */
 
@@ -131,25 +132,25 @@ sr_status sr_certify(const struct sr_specimen *specimen, const struct sr_certifi
 sr_status sr_certify_model(const struct sr_bsdf_model *model, const struct sr_certificate_options *options,
                            struct sr_certificate *out, struct sr_error *error);
 /* Calls f, pdf and sample, `calls` times in all, over parameter sets and directions of all kinds, and looks for NaN,
- * infinite and negative values only: adds a check "soak" to the certificate. Of the specimen as it is where options->sets
- * is 0 or its parameters cannot be drawn. */
+ * infinite and negative values only: adds a check "soak" to the certificate. Of the specimen as it is where
+ * options->sets is 0 or its parameters cannot be drawn. */
 sr_status sr_soak(const struct sr_specimen *specimen, uint64_t calls, const struct sr_certificate_options *options,
                   struct sr_certificate *certificate, struct sr_error *error);
 
 /* ---- fitting ---- */
 
-/* How residuals are counted, for g = f |cos theta_i|: the cube root weighs dark and bright parts of a lobe alike as eyes do; the
- * logarithm counts relative errors (above a thousandth of the mean); linear counts light. */
+/* How residuals are counted, for g = f |cos theta_i|: the cube root weighs dark and bright parts of a lobe alike as
+ * eyes do; the logarithm counts relative errors (above a thousandth of the mean); linear counts light. */
 enum sr_fit_metric { SR_FIT_CUBE_ROOT, SR_FIT_LOG, SR_FIT_LINEAR };
 
 enum { SR_FIT_PARAMETERS = 64 };
 struct sr_fit_options {
-    sr_spectrum lambda;   // [nm] at which the data is asked; spectra get one value for each of the first
-    int lambda_count;     // of them, 1 … SR_LAMBDA_COUNT; all other parameters are shared
-    uint32_t points;      // pairs of directions
-    uint32_t starts;      // from where the search begins: the given parameters, and others from the table's ranges
+    sr_spectrum lambda; // [nm] at which the data is asked; spectra get one value for each of the first
+    int lambda_count;   // of them, 1 … SR_LAMBDA_COUNT; all other parameters are shared
+    uint32_t points;    // pairs of directions
+    uint32_t starts;    // from where the search begins: the given parameters, and others from the table's ranges
     uint32_t seed;
-    double theta_max;     // [deg] of wi and wo
+    double theta_max; // [deg] of wi and wo
     enum sr_fit_metric metric;
     int fixed_count;
     const char *const *fixed; // names of parameters that stay as they are
@@ -173,15 +174,17 @@ struct sr_fit {
     double rms;                // [1] of the residuals in the metric, over that of the data
     double rms_relative;       // [1] of (model - data) |cos theta_i|, over that of the data
     bool has_converged;
-    const char *words;         // the fitted specimen, to be read by sr_specimen_read
+    const char *words; // the fitted specimen, to be read by sr_specimen_read
     const struct sr_fit_point *points;
     uint32_t point_count;
 };
-/* Pairs of directions where a specimen has data (f above 0), half where its sampler sends light, half over the hemisphere. */
+/* Pairs of directions where a specimen has data (f above 0), half where its sampler sends light, half over the
+ * hemisphere. */
 sr_status sr_fit_gather(struct sr_arena *arena, const struct sr_specimen *data, const struct sr_fit_options *options,
                         struct sr_fit_point **points, uint32_t *count, struct sr_error *error);
-/* Least squares (Levenberg & Marquardt) of a model of the list to these points, whose model values it fills in. `model` gives
- * the model, the first starting point and what is fixed; it must have one part of weight 1. Keeps all in the arena. */
+/* Least squares (Levenberg & Marquardt) of a model of the list to these points, whose model values it fills in. `model`
+ * gives the model, the first starting point and what is fixed; it must have one part of weight 1. Keeps all in the
+ * arena. */
 sr_status sr_fit_points(struct sr_arena *arena, struct sr_fit_point *points, uint32_t count,
                         const struct sr_specimen *model, const struct sr_fit_options *options, struct sr_fit *fit,
                         struct sr_error *error);
@@ -206,15 +209,15 @@ enum { SR_DELTAS = 4 };
 int sr_specimen_deltas(const struct sr_specimen *specimen, sr_spectrum lambda, sr_vec3 w,
                        struct sr_delta deltas[SR_DELTAS]);
 
-/* Colour under D65 by 48 wavelengths of 8 nm from 384 to 760 nm: a few sets after each other. Of values that are 1 at all
- * wavelengths, Y is 1 and the colour is white. */
+/* Colour under D65 by 48 wavelengths of 8 nm from 384 to 760 nm: a few sets after each other. Of values that are 1 at
+ * all wavelengths, Y is 1 and the colour is white. */
 enum { SR_COLOUR_SETS = 48 / SR_LAMBDA_COUNT };
 sr_spectrum sr_colour_lambda(int set);
 void sr_colour_add(int set, sr_spectrum values, double xyz[3]);
 
-/* A ball of the specimen, seen from afar, as sRGB: size * size * 3 bytes, the top row first, on white. The sky has a bright
- * round light of 24 deg at the upper left, over a horizon; point: nothing but a sun of half a degree there. Light passes
- * through a ball that transmits. The tangent runs along the circles of latitude. */
+/* A ball of the specimen, seen from afar, as sRGB: size * size * 3 bytes, the top row first, on white. The sky has a
+ * bright round light of 24 deg at the upper left, over a horizon; point: nothing but a sun of half a degree there.
+ * Light passes through a ball that transmits. The tangent runs along the circles of latitude. */
 enum sr_ball_light { SR_BALL_SKY, SR_BALL_POINT };
 sr_status sr_specimen_ball(const struct sr_specimen *specimen, enum sr_ball_light light, uint32_t size,
                            uint32_t samples, uint8_t *srgb, struct sr_error *error);

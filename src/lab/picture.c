@@ -4,8 +4,8 @@
  *     E(w) = INTEGRAL f(w, wi) |cos_theta_i| d wi   [1],   by draws of wi: mean of f |cos_theta_i| / pdf
  *     XYZ  = SUM D65 (x, y, z)bar v / SUM D65 ybar  [1],   48 wavelengths
  *
- * Light that arrives from w is followed in the form for light paths (importance), so that what passes into another medium
- * counts as flux. Enough for the eye; sr_reflectance_cubature is for those who need digits. */
+ * Light that arrives from w is followed in the form for light paths (importance), so that what passes into another
+ * medium counts as flux. Enough for the eye; sr_reflectance_cubature is for those who need digits. */
 #include "lab/private.h"
 
 void sr_specimen_f(const struct sr_specimen *specimen, sr_spectrum lambda, const sr_vec3 *wo, const sr_vec3 *wi,

@@ -22,7 +22,6 @@ void sr_reflectance_describe(const struct sr_beam *from, const struct sr_beam *t
                              struct sr_reflectance *out); // all but the numbers
 void sr_reflectance_factor(struct sr_reflectance *out);   // from the value
 
-
 /* sr_reflectance_cubature in single precision, whether there is a twin or not. */
 sr_status sr_reflectance_cubature_single(const struct sr_specimen *specimen, sr_spectrum lambda,
                                          const struct sr_beam *from, const struct sr_beam *to, double tolerance,

@@ -7,10 +7,11 @@
  * direction the reflectance is one per projected solid angle [1/sr]. R = rho / (that of the perfect diffuser). Uniform
  * radiance within the incident beam. F. E. Nicodemus et al., NBS Monograph 160, 1977.
  *
- * A region is integrated in polar coordinates about its axis, one variable within the other, each adaptively (sr_integrate),
- * so that a kink along any curve is a kink of one variable only. Intervals begin at the mirror's direction, where lobes
- * are, and beside the plane of incidence; on the hemisphere alpha = pi/2 (1 - u^2), so that roots of the cosine become
- * smooth. A lobe far narrower than a thousandth of a radian and far from the mirror's direction may be missed.
+ * A region is integrated in polar coordinates about its axis, one variable within the other, each adaptively
+ * (sr_integrate), so that a kink along any curve is a kink of one variable only. Intervals begin at the mirror's
+ * direction, where lobes are, and beside the plane of incidence; on the hemisphere alpha = pi/2 (1 - u^2), so that
+ * roots of the cosine become smooth. A lobe far narrower than a thousandth of a radian and far from the mirror's
+ * direction may be missed.
  *
  * Delta lobes are summed apart, as sample() shows them. */
 #include "lab/reflect.h"
@@ -116,8 +117,8 @@ static void over_alpha(void *context, double u, struct sr_estimate *out)
 }
 
 static void integrate(struct task *t, const struct lab_region *region, const double *other,
-                      void (*y)(struct task *, const void *, const double *, struct sr_estimate *),
-                      const void *context, const double tolerance[SR_LAMBDA_COUNT], struct sr_estimate *out)
+                      void (*y)(struct task *, const void *, const double *, struct sr_estimate *), const void *context,
+                      const double tolerance[SR_LAMBDA_COUNT], struct sr_estimate *out)
 {
     struct cap c = {.task = t, .region = region, .y = y, .context = context, .betas = {0, 2 * M_PI}, .beta_count = 2};
     c.any_beta = t->is_isotropic && !other && region->is_hemisphere && t->from.is_hemisphere && t->to.is_hemisphere;
@@ -178,7 +179,8 @@ static void received(struct task *t, const void *unused, const double wo[3], str
     integrate(t, &t->from, wo, coming_from, wo, t->inner_tolerance, out);
 }
 
-/* Does f stay the same when both directions turn about the normal? Then one azimuth of a whole hemisphere tells of all. */
+/* Does f stay the same when both directions turn about the normal? Then one azimuth of a whole hemisphere tells of all.
+ */
 static bool is_isotropic(struct task *t)
 {
     struct sr_rng rng = sr_rng_seed(1, 2);

@@ -3,10 +3,11 @@
  *
  *     rho = E[ f cos theta_r / p(w_r) ],    w_i uniform in projected solid angle of the incident beam       [1]
  *
- * Where light is gathered over the hemisphere the specimen's own sampler draws w_r; over a cone, by turns the sampler and a
- * uniform density in the cone, weighed by the balance heuristic (Veach 1997, 9.2). Walks whose density nobody knows are
- * drawn on the hemisphere as they come; for a cone they are found by the uniform density alone. Delta lobes count where
- * they land. Random f gets a new seed for each sample. Single precision: what is systematic is below 1e-6. */
+ * Where light is gathered over the hemisphere the specimen's own sampler draws w_r; over a cone, by turns the sampler
+ * and a uniform density in the cone, weighed by the balance heuristic (Veach 1997, 9.2). Walks whose density nobody
+ * knows are drawn on the hemisphere as they come; for a cone they are found by the uniform density alone. Delta lobes
+ * count where they land. Random f gets a new seed for each sample. Single precision: what is systematic is below 1e-6.
+ */
 #include "lab/private.h"
 #include "lab/reflect.h"
 

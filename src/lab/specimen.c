@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* A specimen from words: models with their parameters, files of measured data, materials of scenes, and sums of these.
  *
- * Parameters go through the material that follows from the model's table, the same way as those of a scene file, so that a
- * specimen is what a scene of these words would show. Materials of scenes are taken at uv = (0.5, 0.5), in the frame of
- * their shading normal; a mix is taken apart into the sum that it stands for. */
+ * Parameters go through the material that follows from the model's table, the same way as those of a scene file, so
+ * that a specimen is what a scene of these words would show. Materials of scenes are taken at uv = (0.5, 0.5), in the
+ * frame of their shading normal; a mix is taken apart into the sum that it stands for. */
 #include "lab/private.h"
 
 #include "import/import.h"

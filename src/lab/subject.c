@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* What a certificate looks at: a specimen as it is, or a model with parameters drawn from its table.
  *
- * Numbers are uniform over their range; over its logarithm where the range spans decades (widths, exponents, thicknesses);
- * one in eight is at either end, because laws break there first. Reflectances that share one incident light (reflectance,
- * transmittance, specular, diffuse) are drawn so that they do not sum above 1. */
+ * Numbers are uniform over their range; over its logarithm where the range spans decades (widths, exponents,
+ * thicknesses); one in eight is at either end, because laws break there first. Reflectances that share one incident
+ * light (reflectance, transmittance, specular, diffuse) are drawn so that they do not sum above 1. */
 #include "lab/certificate.h"
 
 #include <stdio.h>

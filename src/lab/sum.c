@@ -4,8 +4,8 @@
  *     f = SUM w_j f_j  [1/sr],    pdf = SUM p_j pdf_j  [1/sr],    p_j = w_j / SUM w_j
  *
  * Delta lobes are drawn with the probability p_j times that of their part; so are parts whose density is known up to a
- * factor only, with their own f: one part at a time, right in the mean (Veach 1997, 9.2.4). Parts that reflect nothing are
- * not drawn. The sum conserves energy where SUM w_j E_j <= 1. */
+ * factor only, with their own f: one part at a time, right in the mean (Veach 1997, 9.2.4). Parts that reflect nothing
+ * are not drawn. The sum conserves energy where SUM w_j E_j <= 1. */
 #include "lab/private.h"
 
 static uint32_t lobes(const void *self)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Between the two precisions: what both compilations can say, in double and int alone.
  *
- * double/bridge.c is compiled in double precision, twin.c in single; a model is known to both by its place in the list. */
+ * double/bridge.c is compiled in double precision, twin.c in single; a model is known to both by its place in the list.
+ */
 #ifndef SR_LAB_TWIN_H
 #define SR_LAB_TWIN_H
 

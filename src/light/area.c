@@ -4,30 +4,39 @@
  *     L(x, w) = L         on the outside, or on both sides            Phi = pi A L        [lm] a side
  *
  * L is scaled to the luminance `scale` [cd/m^2], or so that the whole shape gives off scale * power. With an image the
- * radiance is rgb(u, 1-v) of the image, bilinear between texel centres, times the white of its colour space; its mean over
- * (u, v) is taken as the mean over the surface. J. H. Lambert, Photometria, 1760.
- * Of patches whose (u, v) are their own, one half of the points is drawn in proportion to the image, as M. Pharr, W. Jakob and
- * G. Humphreys draw all of them (Physically Based Rendering, 4th ed. 2023, section 6.6), the other by solid angle or area.
- * Limits: power is exact for an image only where (u, v) maps area evenly. */
+ * radiance is rgb(u, 1-v) of the image, bilinear between texel centres, times the white of its colour space; its mean
+ * over (u, v) is taken as the mean over the surface. J. H. Lambert, Photometria, 1760. Of patches whose (u, v) are
+ * their own, one half of the points is drawn in proportion to the image, as M. Pharr, W. Jakob and G. Humphreys draw
+ * all of them (Physically Based Rendering, 4th ed. 2023, section 6.6), the other by solid angle or area. Limits: power
+ * is exact for an image only where (u, v) maps area evenly. */
 #include "light/emission.h"
 
 const struct sr_param sr_light_emission_params[] = {
-    {SR_PARAM_ILLUMINANT, "L", "cd/m^2", 0, INFINITY, NAN, offsetof(struct sr_light_emission, L), "radiance; only its shape counts, rgb its brightness, too"},
+    {SR_PARAM_ILLUMINANT, "L", "cd/m^2", 0, INFINITY, NAN, offsetof(struct sr_light_emission, L),
+     "radiance; only its shape counts, rgb its brightness, too"},
     {SR_PARAM_FLOAT, "scale", "1", 0, INFINITY, 1, offsetof(struct sr_light_emission, scale), "factor"},
     {SR_PARAM_BOOL, "twosided", "1", 0, 1, 0, offsetof(struct sr_light_emission, two_sided), "both sides glow"},
-    {SR_PARAM_FLOAT, "power", "lm", -INFINITY, INFINITY, NAN, offsetof(struct sr_light_emission, power), "luminous flux of the whole shape, if above 0"},
-    {SR_PARAM_FILE, "filename", "1", 0, 0, 0, offsetof(struct sr_light_emission, filename), "image over the surface instead of L"},
+    {SR_PARAM_FLOAT, "power", "lm", -INFINITY, INFINITY, NAN, offsetof(struct sr_light_emission, power),
+     "luminous flux of the whole shape, if above 0"},
+    {SR_PARAM_FILE, "filename", "1", 0, 0, 0, offsetof(struct sr_light_emission, filename),
+     "image over the surface instead of L"},
     {.name = NULL},
 };
 
-/* What a cell between texel centres shines by bilinear interpolation: the tent's mean, nowhere 0 where there is light. */
+/* What a cell between texel centres shines by bilinear interpolation: the tent's mean, nowhere 0 where there is light.
+ */
 static float blurred(const struct sr_texels *t, uint32_t x, uint32_t y)
 {
     static const float w[3] = {0.125f, 0.75f, 0.125f};
     float sum = 0;
     for (uint32_t j = 0; j < 3; ++j)
         for (uint32_t i = 0; i < 3; ++i) {
-            uint32_t xx = x + i < 1 ? 0 : x + i - 1 < t->width ? x + i - 1 : t->width - 1, yy = y + j < 1 ? 0 : y + j - 1 < t->height ? y + j - 1 : t->height - 1;
+            uint32_t xx = x + i < 1              ? 0
+                          : x + i - 1 < t->width ? x + i - 1
+                                                 : t->width - 1,
+                     yy = y + j < 1               ? 0
+                          : y + j - 1 < t->height ? y + j - 1
+                                                  : t->height - 1;
             struct sr_rgb c = sr_light_texel(t, xx, yy);
             sum += w[i] * w[j] * (c.r + c.g + c.b);
         }
@@ -55,13 +64,15 @@ static sr_status build_picture(struct sr_light_emission *e, struct sr_arena *are
     return is_built ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "no memory for the density of %s", e->filename);
 }
 
-sr_status sr_light_emission_prepare(struct sr_light_emission *e, float total_area, struct sr_arena *arena, struct sr_error *error)
+sr_status sr_light_emission_prepare(struct sr_light_emission *e, float total_area, struct sr_arena *arena,
+                                    struct sr_error *error)
 {
     bool has_image = e->texels.width > 0;
     double mean = 1; // luminance over that of white
     if (has_image) {
         if (e->L.kind != SR_SPD_NONE)
-            return sr_fail(error, SR_ERROR_INPUT, "an area light takes \"L\" or \"filename\" (%s), not both", e->filename);
+            return sr_fail(error, SR_ERROR_INPUT, "an area light takes \"L\" or \"filename\" (%s), not both",
+                           e->filename);
         if (sr_light_check_texels(&e->texels, e->filename, error))
             return error->status;
         mean = sr_light_mean_luminance(&e->texels);
@@ -72,7 +83,8 @@ sr_status sr_light_emission_prepare(struct sr_light_emission *e, float total_are
     if (e->power > 0) {
         double flux = (double)SR_PI * (double)total_area * mean * (e->two_sided ? 2 : 1);
         if (!(flux > 0))
-            return sr_fail(error, SR_ERROR_INPUT, "an area light with \"power\" needs an area and an image that is not black");
+            return sr_fail(error, SR_ERROR_INPUT,
+                           "an area light with \"power\" needs an area and an image that is not black");
         share = (double)e->power / flux;
         luminance *= share;
     }
@@ -100,8 +112,10 @@ static sr_spectrum image_radiance(const struct sr_light_emission *e, sr_vec2 uv,
     uint32_t x0 = (uint32_t)x, y0 = (uint32_t)y;
     uint32_t x1 = x0 + 1 < t->width ? x0 + 1 : x0, y1 = y0 + 1 < t->height ? y0 + 1 : y0;
     float fx = x - (float)x0, fy = y - (float)y0;
-    struct sr_rgb a = sr_light_texel(t, x0, y0), b = sr_light_texel(t, x1, y0), c = sr_light_texel(t, x0, y1), d = sr_light_texel(t, x1, y1);
-    struct sr_rgb rgb = {sr_lerp(fy, sr_lerp(fx, a.r, b.r), sr_lerp(fx, c.r, d.r)), sr_lerp(fy, sr_lerp(fx, a.g, b.g), sr_lerp(fx, c.g, d.g)),
+    struct sr_rgb a = sr_light_texel(t, x0, y0), b = sr_light_texel(t, x1, y0), c = sr_light_texel(t, x0, y1),
+                  d = sr_light_texel(t, x1, y1);
+    struct sr_rgb rgb = {sr_lerp(fy, sr_lerp(fx, a.r, b.r), sr_lerp(fx, c.r, d.r)),
+                         sr_lerp(fy, sr_lerp(fx, a.g, b.g), sr_lerp(fx, c.g, d.g)),
                          sr_lerp(fy, sr_lerp(fx, a.b, b.b), sr_lerp(fx, c.b, d.b))};
     if (rgb.r + rgb.g + rgb.b <= 0)
         return SR_BLACK;
@@ -109,14 +123,16 @@ static sr_spectrum image_radiance(const struct sr_light_emission *e, sr_vec2 uv,
     return sr_spd_along(&s, w) * e->derived_scale;
 }
 
-static sr_spectrum radiance(const struct sr_light_emission *e, sr_vec3 n, sr_vec2 uv, sr_vec3 w, const struct sr_wavelengths *wavelengths)
+static sr_spectrum radiance(const struct sr_light_emission *e, sr_vec3 n, sr_vec2 uv, sr_vec3 w,
+                            const struct sr_wavelengths *wavelengths)
 {
     if (!e->two_sided && sr_dot(n, w) <= 0)
         return SR_BLACK;
     return e->texels.width ? image_radiance(e, uv, wavelengths) : sr_spd_along(&e->emitted, wavelengths);
 }
 
-static sr_spectrum Le(const void *self, const struct sr_point *there, sr_vec3 w, const struct sr_wavelengths *wavelengths)
+static sr_spectrum Le(const void *self, const struct sr_point *there, sr_vec3 w,
+                      const struct sr_wavelengths *wavelengths)
 {
     return radiance(((const struct sr_light_area *)self)->emission, there->n, there->uv, w, wavelengths);
 }
@@ -125,16 +141,19 @@ static void prepare_flat(struct sr_light_area *m)
 {
     const struct sr_shape_flat *a = &m->flat;
     sr_vec3 across = sr_sub(a->f, a->e), diagonal = sr_add(a->e, a->f);
-    sr_vec3 largest = {fabsf(a->corner.x) + fabsf(a->e.x) + fabsf(a->f.x), fabsf(a->corner.y) + fabsf(a->e.y) + fabsf(a->f.y),
+    sr_vec3 largest = {fabsf(a->corner.x) + fabsf(a->e.x) + fabsf(a->f.x),
+                       fabsf(a->corner.y) + fabsf(a->e.y) + fabsf(a->f.y),
                        fabsf(a->corner.z) + fabsf(a->e.z) + fabsf(a->f.z)};
-    float extent = sqrtf(sr_max(sr_length2(across), a->is_triangle ? sr_max(sr_length2(a->e), sr_length2(a->f)) : sr_length2(diagonal)));
+    float extent = sqrtf(
+        sr_max(sr_length2(across), a->is_triangle ? sr_max(sr_length2(a->e), sr_length2(a->f)) : sr_length2(diagonal)));
     m->kind = SR_LIGHT_FLAT;
     m->centre = sr_mad(a->corner, a->is_triangle ? 1.0f / 3 : 0.5f, diagonal);
     m->far2 = sr_sqr(1.5f * extent);
     m->inverse_area = 1 / m->area;
     // corner + u e + v f is rounded as often as gamma(8) allows, and once more where it is moved off
-    m->off = 10 * SR_MACHINE_EPSILON * (fabsf(a->n.x) * largest.x + fabsf(a->n.y) * largest.y + fabsf(a->n.z) * largest.z) +
-             2 * SR_MACHINE_EPSILON * sr_max_component(largest) + 1e-37f;
+    m->off =
+        10 * SR_MACHINE_EPSILON * (fabsf(a->n.x) * largest.x + fabsf(a->n.y) * largest.y + fabsf(a->n.z) * largest.z) +
+        2 * SR_MACHINE_EPSILON * sr_max_component(largest) + 1e-37f;
 }
 
 static void prepare_round(struct sr_light_area *m)
@@ -147,11 +166,16 @@ static void prepare_round(struct sr_light_area *m)
     m->far2 = sr_sqr(1.001f * radius + 4 * m->off); // not at the surface itself
 }
 
-struct sr_light_area sr_light_area_of(struct sr_shape shape, uint32_t primitive, const struct sr_light_emission *emission, bool is_ghost)
+struct sr_light_area sr_light_area_of(struct sr_shape shape, uint32_t primitive,
+                                      const struct sr_light_emission *emission, bool is_ghost)
 {
-    struct sr_light_area m = {.shape = shape, .primitive = primitive, .emission = emission, .is_ghost = is_ghost,
+    struct sr_light_area m = {.shape = shape,
+                              .primitive = primitive,
+                              .emission = emission,
+                              .is_ghost = is_ghost,
                               .area = shape.model->area(shape.self, primitive)};
-    bool has_own_uv = shape.model == &sr_shape_bilinearmesh && ((const struct sr_shape_patches *)shape.self)->uv.count == 0;
+    bool has_own_uv =
+        shape.model == &sr_shape_bilinearmesh && ((const struct sr_shape_patches *)shape.self)->uv.count == 0;
     if (emission->picture && has_own_uv && m.area > 0) {
         m.kind = SR_LIGHT_PICTURE;
         m.far2 = INFINITY;
@@ -166,14 +190,15 @@ struct sr_light_area sr_light_area_of(struct sr_shape shape, uint32_t primitive,
 }
 
 // by area: pdf = r^2 / (A |cos theta|)
-static inline bool sample_flat(const struct sr_light_area *m, sr_vec3 from, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
+static inline bool sample_flat(const struct sr_light_area *m, sr_vec3 from, sr_vec2 u, const struct sr_wavelengths *w,
+                               struct sr_light_sample *s)
 {
     const struct sr_shape_flat *a = &m->flat;
     if (a->is_triangle)
         u = sr_warp_triangle(u);
     sr_vec3 p = sr_mad(sr_mad(a->corner, u.x, a->e), u.y, a->f), d = sr_sub(p, from);
     float height = sr_dot(a->n, d), r2 = sr_length2(d); // below the surface [m]
-    if (height >= 0 && !m->emission->two_sided) // seen from behind: no spectrum is needed to know
+    if (height >= 0 && !m->emission->two_sided)         // seen from behind: no spectrum is needed to know
         return false;
     float r = sqrtf(r2);
     if (!(fabsf(height) > 1e-7f * r))
@@ -195,17 +220,20 @@ static inline float cone(float radius, float d2)
     return s2 / (1 + sr_safe_sqrt(1 - s2));
 }
 
-/* By solid angle within the cone of the sphere: pdf = 1 / (2 pi (1 - cos theta_max)). theta: at the receiver, from the axis;
- * beta: on the sphere, between ray and radius; alpha = beta - theta: at the centre, where the point is seen. */
-static inline bool sample_round(const struct sr_light_area *m, sr_vec3 from, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
+/* By solid angle within the cone of the sphere: pdf = 1 / (2 pi (1 - cos theta_max)). theta: at the receiver, from the
+ * axis; beta: on the sphere, between ray and radius; alpha = beta - theta: at the centre, where the point is seen. */
+static inline bool sample_round(const struct sr_light_area *m, sr_vec3 from, sr_vec2 u, const struct sr_wavelengths *w,
+                                struct sr_light_sample *s)
 {
     if (m->round.side < 0 && !m->emission->two_sided)
         return false;
     sr_vec3 to = sr_sub(m->centre, from);
     float d2 = sr_length2(to), rest = cone(m->round.radius, d2), x = u.x * rest;
     float cos_theta = 1 - x, sin_theta = sqrtf(x * (2 - x));
-    float sin2_beta = sr_min(1, u.x * (2 - x) / (2 - rest)), sin_beta = sqrtf(sin2_beta), cos_beta = sqrtf(1 - sin2_beta);
-    float sin_alpha = sin_beta * cos_theta - cos_beta * sin_theta, cos_alpha = cos_beta * cos_theta + sin_beta * sin_theta;
+    float sin2_beta = sr_min(1, u.x * (2 - x) / (2 - rest)), sin_beta = sqrtf(sin2_beta),
+          cos_beta = sqrtf(1 - sin2_beta);
+    float sin_alpha = sin_beta * cos_theta - cos_beta * sin_theta,
+          cos_alpha = cos_beta * cos_theta + sin_beta * sin_theta;
     float sin_phi, cos_phi;
     sr_sin_cos_turn(u.y, &sin_phi, &cos_phi);
     struct sr_frame f = sr_frame_from_z(sr_scale(1 / sqrtf(d2), to));
@@ -232,12 +260,14 @@ static float picture_pdf(const struct sr_light_area *m, sr_vec3 from, sr_vec2 uv
     m->shape.model->point(m->shape.self, m->primitive, uv, x);
     sr_vec3 d = sr_sub(x->p, from);
     float jacobian = sr_length(sr_cross(x->dpdu, x->dpdv)), r2 = sr_length2(d), height = fabsf(sr_dot(x->n, d));
-    float pdf = sr_piecewise2_pdf(m->emission->picture, (sr_vec2){uv.x, 1 - uv.y}) * r2 * sqrtf(r2) / (jacobian * height);
+    float pdf =
+        sr_piecewise2_pdf(m->emission->picture, (sr_vec2){uv.x, 1 - uv.y}) * r2 * sqrtf(r2) / (jacobian * height);
     return pdf < INFINITY ? pdf : 0;
 }
 
 /* One half of the points by the image, the other as without it; the density is the mean of both. */
-static bool draw_point(const struct sr_light_area *m, const struct sr_point *reference, sr_vec2 u, struct sr_shape_sample *s)
+static bool draw_point(const struct sr_light_area *m, const struct sr_point *reference, sr_vec2 u,
+                       struct sr_shape_sample *s)
 {
     const struct sr_shape_model *shape = m->shape.model;
     if (m->kind != SR_LIGHT_PICTURE)
@@ -257,18 +287,24 @@ static bool draw_point(const struct sr_light_area *m, const struct sr_point *ref
     if (!(pdf > 0))
         return false;
     sr_vec3 wi = sr_normalize(sr_sub(x.p, reference->p));
-    *s = (struct sr_shape_sample){.p = x.p, .p_error = x.p_error, .n = x.n, .uv = uv,
+    *s = (struct sr_shape_sample){.p = x.p,
+                                  .p_error = x.p_error,
+                                  .n = x.n,
+                                  .uv = uv,
                                   .pdf = 0.5f * (pdf + shape->pdf(m->shape.self, m->primitive, reference, wi, &x))};
     return true;
 }
 
-static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
+static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w,
+                   struct sr_light_sample *s)
 {
     const struct sr_light_area *m = self;
-    if (m->kind == SR_LIGHT_FLAT && !m->emission->two_sided && sr_dot(m->flat.n, sr_sub(reference->p, m->flat.corner)) <= 0)
+    if (m->kind == SR_LIGHT_FLAT && !m->emission->two_sided &&
+        sr_dot(m->flat.n, sr_sub(reference->p, m->flat.corner)) <= 0)
         return false; // all of it is seen from behind: no point need be drawn to know
     if (is_far(m, reference->p))
-        return m->kind == SR_LIGHT_FLAT ? sample_flat(m, reference->p, u, w, s) : sample_round(m, reference->p, u, w, s);
+        return m->kind == SR_LIGHT_FLAT ? sample_flat(m, reference->p, u, w, s)
+                                        : sample_round(m, reference->p, u, w, s);
     struct sr_shape_sample x;
     if (!draw_point(m, reference, u, &x) || !(x.pdf > 0) || isinf(x.pdf))
         return false;
@@ -280,8 +316,13 @@ static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u
     if (!m->emission->two_sided && sr_dot(x.n, wi) >= 0)
         return false;
     struct sr_point there = {.p = x.p, .p_error = x.p_error, .n = x.n};
-    *s = (struct sr_light_sample){.L = radiance(m->emission, x.n, x.uv, sr_neg(wi), w), .wi = wi, .distance = r,
-                                  .p = sr_point_offset(&there, sr_neg(wi)), .n = x.n, .pdf = x.pdf, .is_delta = m->is_ghost};
+    *s = (struct sr_light_sample){.L = radiance(m->emission, x.n, x.uv, sr_neg(wi), w),
+                                  .wi = wi,
+                                  .distance = r,
+                                  .p = sr_point_offset(&there, sr_neg(wi)),
+                                  .n = x.n,
+                                  .pdf = x.pdf,
+                                  .is_delta = m->is_ghost};
     return !sr_spectrum_is_black(s->L);
 }
 
@@ -303,7 +344,8 @@ static float pdf(const void *self, const struct sr_point *reference, sr_vec3 wi,
 }
 
 // by area and cosine
-static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w, struct sr_light_ray *ray)
+static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w,
+                 struct sr_light_ray *ray)
 {
     const struct sr_light_area *m = self;
     struct sr_shape_sample x;
@@ -314,8 +356,10 @@ static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const s
         u_direction.x = sr_min(is_inside ? 2 * u_direction.x - 1 : 2 * u_direction.x, SR_ONE_MINUS_EPSILON);
     sr_vec3 local = sr_warp_cosine_hemisphere(u_direction);
     struct sr_frame frame = sr_frame_from_z(is_inside ? sr_neg(x.n) : x.n);
-    *ray = (struct sr_light_ray){.from = {.p = x.p, .p_error = x.p_error, .n = x.n, .ns = x.n, .uv = x.uv}, .w = sr_to_world(&frame, local),
-                                 .pdf_area = x.pdf, .pdf_direction = local.z * SR_INV_PI * (is_two_sided ? 0.5f : 1)};
+    *ray = (struct sr_light_ray){.from = {.p = x.p, .p_error = x.p_error, .n = x.n, .ns = x.n, .uv = x.uv},
+                                 .w = sr_to_world(&frame, local),
+                                 .pdf_area = x.pdf,
+                                 .pdf_direction = local.z * SR_INV_PI * (is_two_sided ? 0.5f : 1)};
     ray->L = radiance(m->emission, x.n, x.uv, ray->w, w);
     return ray->pdf_direction > 0 && !sr_spectrum_is_black(ray->L);
 }
@@ -337,13 +381,24 @@ static float power(const void *self)
 static bool bounds(const void *self, struct sr_light_bounds *b)
 {
     const struct sr_light_area *m = self;
-    *b = (struct sr_light_bounds){.box = m->shape.model->bounds(m->shape.self, m->primitive), .cos_theta_e = 0, .two_sided = m->emission->two_sided,
-                                  .power = SR_PI * m->area * m->emission->choice_luminance * (m->emission->two_sided ? 2 : 1)};
+    *b = (struct sr_light_bounds){.box = m->shape.model->bounds(m->shape.self, m->primitive),
+                                  .cos_theta_e = 0,
+                                  .two_sided = m->emission->two_sided,
+                                  .power = SR_PI * m->area * m->emission->choice_luminance *
+                                           (m->emission->two_sided ? 2 : 1)};
     m->shape.model->normals(m->shape.self, m->primitive, &b->axis, &b->cos_theta_o);
     return true;
 }
 
 const struct sr_light_model sr_light_area = {
-    .name = "diffuse", .params = sr_light_emission_params, .size = sizeof(struct sr_light_area),
-    .sample = sample, .pdf = pdf, .Le = Le, .bounds = bounds, .emit = emit, .emit_pdf = emit_pdf, .power = power,
+    .name = "diffuse",
+    .params = sr_light_emission_params,
+    .size = sizeof(struct sr_light_area),
+    .sample = sample,
+    .pdf = pdf,
+    .Le = Le,
+    .bounds = bounds,
+    .emit = emit,
+    .emit_pdf = emit_pdf,
+    .power = power,
 };

@@ -3,8 +3,8 @@
  *
  *     E = E_perpendicular cos_theta         [lx]
  *
- * L is scaled to the illuminance `scale` [lx] of a surface that faces it, or with `illuminance` to scale * illuminance. It
- * travels from `from` to `to`. Limits: shadows are sharp; the sun's are not (it is 0.53 deg wide). */
+ * L is scaled to the illuminance `scale` [lx] of a surface that faces it, or with `illuminance` to scale * illuminance.
+ * It travels from `from` to `to`. Limits: shadows are sharp; the sun's are not (it is 0.53 deg wide). */
 #include "light/emission.h"
 
 struct distant {
@@ -12,18 +12,21 @@ struct distant {
     struct sr_spd L;
     float scale, illuminance; // [1] [lx]
     sr_vec3 from, to;
-    sr_vec3 wi;               // derived: toward the light [1]
-    sr_vec3 centre;           // of the scene's sphere [m]
-    float radius;             // [m]
-    float luminous, choice;   // [lx]
+    sr_vec3 wi;             // derived: toward the light [1]
+    sr_vec3 centre;         // of the scene's sphere [m]
+    float radius;           // [m]
+    float luminous, choice; // [lx]
 };
 
 static const struct sr_param params[] = {
-    {SR_PARAM_ILLUMINANT, "L", "lx", 0, INFINITY, NAN, offsetof(struct distant, L), "irradiance; only its shape counts, rgb its brightness, too"},
+    {SR_PARAM_ILLUMINANT, "L", "lx", 0, INFINITY, NAN, offsetof(struct distant, L),
+     "irradiance; only its shape counts, rgb its brightness, too"},
     {SR_PARAM_FLOAT, "scale", "1", 0, INFINITY, 1, offsetof(struct distant, scale), "factor"},
-    {SR_PARAM_FLOAT, "illuminance", "lx", -INFINITY, INFINITY, NAN, offsetof(struct distant, illuminance), "of a surface that faces the light, if above 0"},
+    {SR_PARAM_FLOAT, "illuminance", "lx", -INFINITY, INFINITY, NAN, offsetof(struct distant, illuminance),
+     "of a surface that faces the light, if above 0"},
     {SR_PARAM_POINT3, "from", "m", -INFINITY, INFINITY, 0, offsetof(struct distant, from), "light travels from here"},
-    {SR_PARAM_POINT3, "to", "m", -INFINITY, INFINITY, NAN, offsetof(struct distant, to), "to here; (0, 0, 1) if not given"},
+    {SR_PARAM_POINT3, "to", "m", -INFINITY, INFINITY, NAN, offsetof(struct distant, to),
+     "to here; (0, 0, 1) if not given"},
     {.name = NULL},
 };
 
@@ -51,22 +54,28 @@ static void place(void *self, sr_vec3 scene_centre, float scene_radius)
     m->radius = scene_radius;
 }
 
-static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
+static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w,
+                   struct sr_light_sample *s)
 {
     (void)reference, (void)u;
     const struct distant *m = self;
-    *s = (struct sr_light_sample){.L = sr_spd_eval(&m->L, w->lambda), .wi = m->wi, .distance = INFINITY, .pdf = 1, .is_delta = true};
+    *s = (struct sr_light_sample){
+        .L = sr_spd_eval(&m->L, w->lambda), .wi = m->wi, .distance = INFINITY, .pdf = 1, .is_delta = true};
     return true;
 }
 
-static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w, struct sr_light_ray *ray)
+static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w,
+                 struct sr_light_ray *ray)
 {
     (void)u_direction;
     const struct distant *m = self;
     if (!(m->radius > 0))
         return false;
-    *ray = (struct sr_light_ray){.from = {.p = sr_light_outside(m->centre, m->radius, m->wi, u_place)}, .w = sr_neg(m->wi),
-                                 .L = sr_spd_along(&m->L, w), .pdf_area = SR_INV_PI / sr_sqr(m->radius), .pdf_direction = 1};
+    *ray = (struct sr_light_ray){.from = {.p = sr_light_outside(m->centre, m->radius, m->wi, u_place)},
+                                 .w = sr_neg(m->wi),
+                                 .L = sr_spd_along(&m->L, w),
+                                 .pdf_area = SR_INV_PI / sr_sqr(m->radius),
+                                 .pdf_direction = 1};
     return true;
 }
 
@@ -93,7 +102,18 @@ static bool bounds(const void *self, struct sr_light_bounds *b)
 }
 
 const struct sr_light_model sr_light_distant = {
-    .name = "distant", .params = params, .size = sizeof(struct distant), .is_infinite = true, .is_delta = true, .prepare = prepare,
-    .place = place, .sample = sample, .pdf = sr_light_delta_pdf, .Le = sr_light_delta_Le, .bounds = bounds, .emit = emit,
-    .emit_pdf = emit_pdf, .power = power,
+    .name = "distant",
+    .params = params,
+    .size = sizeof(struct distant),
+    .is_infinite = true,
+    .is_delta = true,
+    .prepare = prepare,
+    .place = place,
+    .sample = sample,
+    .pdf = sr_light_delta_pdf,
+    .Le = sr_light_delta_Le,
+    .bounds = bounds,
+    .emit = emit,
+    .emit_pdf = emit_pdf,
+    .power = power,
 };

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* From what a scene file says of a light's brightness to a spectrum with that brightness.
  *
- *     s'(lambda) = luminance s(lambda) / INTEGRAL s ybar dlambda         so  INTEGRAL s' ybar dlambda = luminance  [cd/m^2]
+ *     s'(lambda) = luminance s(lambda) / INTEGRAL s ybar dlambda         so  INTEGRAL s' ybar dlambda = luminance
+ * [cd/m^2]
  *
- * Spectra thus contain 683 lm/W: s' / 683 is in W m^-2 sr^-1 nm^-1. Of scenes in SI units s' = 683 s, and Planck's law as it is. An RGB emission is rgb times a white illuminant, and is
- * normalised by the white alone, as pbrt-v4 does: grey 0.5 is half as bright as white.
- * Limits: a spectrum without luminance (all of it outside 360 to 830 nm) has no such factor and is refused. */
+ * Spectra thus contain 683 lm/W: s' / 683 is in W m^-2 sr^-1 nm^-1. Of scenes in SI units s' = 683 s, and Planck's law
+ * as it is. An RGB emission is rgb times a white illuminant, and is normalised by the white alone, as pbrt-v4 does:
+ * grey 0.5 is half as bright as white. Limits: a spectrum without luminance (all of it outside 360 to 830 nm) has no
+ * such factor and is refused. */
 #include "light/emission.h"
 
 #include "quantity/quantity.h"
@@ -28,7 +30,9 @@ sr_status sr_light_normalise(struct sr_spd *s, enum sr_colour_space_id space, fl
         return isfinite(s->scale) ? SR_OK : sr_fail(error, SR_ERROR_INPUT, "the emission of a light is not finite");
     }
     if (sr_spd_max(s) > 0)
-        return sr_fail(error, SR_ERROR_INPUT, "the emission spectrum of a light has no luminance, so that it cannot be scaled to the brightness asked for");
+        return sr_fail(
+            error, SR_ERROR_INPUT,
+            "the emission spectrum of a light has no luminance, so that it cannot be scaled to the brightness asked for");
     s->scale = 0;
     return SR_OK;
 }
@@ -38,8 +42,8 @@ static bool has_own_unit(const struct sr_spd *s)
     return s->kind != SR_SPD_NONE && s->kind != SR_SPD_ILLUMINANT;
 }
 
-sr_status sr_light_set_brightness(struct sr_spd *s, enum sr_colour_space_id space, bool is_absolute, float scale, float share,
-                                  struct sr_error *error)
+sr_status sr_light_set_brightness(struct sr_spd *s, enum sr_colour_space_id space, bool is_absolute, float scale,
+                                  float share, struct sr_error *error)
 {
     if (!is_absolute || !has_own_unit(s))
         return sr_light_normalise(s, space, scale * (share > 0 ? share : 1), error);
@@ -47,10 +51,12 @@ sr_status sr_light_set_brightness(struct sr_spd *s, enum sr_colour_space_id spac
     if (share > 0) {
         double given = sr_observer_integral(SR_RADIOMETRIC, s, (double)SR_LAMBDA_MIN, (double)SR_LAMBDA_MAX);
         if (!(given > 0))
-            return sr_fail(error, SR_ERROR_INPUT, "a light without radiation from 360 to 830 nm cannot be scaled to the power asked for");
+            return sr_fail(error, SR_ERROR_INPUT,
+                           "a light without radiation from 360 to 830 nm cannot be scaled to the power asked for");
         factor *= (double)share / given;
     } else if (s->kind == SR_SPD_BLACKBODY)
-        factor *= sr_planck(2.897771955e6 / (double)s->temperature, (double)s->temperature); // its maximum, by Wien's law
+        factor *=
+            sr_planck(2.897771955e6 / (double)s->temperature, (double)s->temperature); // its maximum, by Wien's law
     s->scale = (float)((double)s->scale * factor);
     return isfinite(s->scale) ? SR_OK : sr_fail(error, SR_ERROR_INPUT, "the emission of a light is not finite");
 }
@@ -65,7 +71,8 @@ sr_status sr_light_check_finite(const struct sr_texels *t, const char *filename,
     size_t n = (size_t)t->width * t->height * t->channels;
     for (size_t i = 0; t->floats && i < n; ++i)
         if (!isfinite(t->floats[i]))
-            return sr_fail(error, SR_ERROR_INPUT, "%s: texel %zu of a light's image is infinite or not a number", filename, i / t->channels);
+            return sr_fail(error, SR_ERROR_INPUT, "%s: texel %zu of a light's image is infinite or not a number",
+                           filename, i / t->channels);
     return SR_OK;
 }
 
@@ -94,7 +101,8 @@ float sr_light_delta_pdf(const void *self, const struct sr_point *reference, sr_
     return 0;
 }
 
-sr_spectrum sr_light_delta_Le(const void *self, const struct sr_point *there, sr_vec3 w, const struct sr_wavelengths *wavelengths)
+sr_spectrum sr_light_delta_Le(const void *self, const struct sr_point *there, sr_vec3 w,
+                              const struct sr_wavelengths *wavelengths)
 {
     (void)self, (void)there, (void)w, (void)wavelengths;
     return SR_BLACK;

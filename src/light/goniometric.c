@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* A point whose intensity is an image of all directions.
  *
- *     I(w) = I Y(square(w)),   Phi = 4 pi I mean(Y)          [cd] [lm];   p(w) = Y / (4 pi mean(Y))  [1/sr] where paths begin
+ *     I(w) = I Y(square(w)),   Phi = 4 pi I mean(Y)          [cd] [lm];   p(w) = Y / (4 pi mean(Y))  [1/sr] where paths
+ * begin
  *
- * The image is an equal-area octahedral map (Clarberg 2008), looked up without interpolation; Y is the mean of R, G and B, or the
- * only channel. The map's pole is the light's +y: its (x, y, z) is (x, z, y) here, as pbrt-v4 has it. I is scaled to the
- * luminous intensity `scale` where Y is 1, or so that Phi = scale * power. Limits: far field; one colour. */
+ * The image is an equal-area octahedral map (Clarberg 2008), looked up without interpolation; Y is the mean of R, G and
+ * B, or the only channel. The map's pole is the light's +y: its (x, y, z) is (x, z, y) here, as pbrt-v4 has it. I is
+ * scaled to the luminous intensity `scale` where Y is 1, or so that Phi = scale * power. Limits: far field; one colour.
+ */
 #include "light/pixels.h"
 
 struct goniometric {
@@ -22,10 +24,13 @@ struct goniometric {
 };
 
 static const struct sr_param params[] = {
-    {SR_PARAM_FILE, "filename", "1", 0, 0, 0, offsetof(struct goniometric, filename), "square image: equal-area octahedral map of the intensity"},
-    {SR_PARAM_ILLUMINANT, "I", "cd", 0, INFINITY, NAN, offsetof(struct goniometric, I), "intensity where the image is 1; only its shape counts, rgb its brightness, too"},
+    {SR_PARAM_FILE, "filename", "1", 0, 0, 0, offsetof(struct goniometric, filename),
+     "square image: equal-area octahedral map of the intensity"},
+    {SR_PARAM_ILLUMINANT, "I", "cd", 0, INFINITY, NAN, offsetof(struct goniometric, I),
+     "intensity where the image is 1; only its shape counts, rgb its brightness, too"},
     {SR_PARAM_FLOAT, "scale", "1", 0, INFINITY, 1, offsetof(struct goniometric, scale), "factor"},
-    {SR_PARAM_FLOAT, "power", "lm", -INFINITY, INFINITY, NAN, offsetof(struct goniometric, power), "luminous flux of the whole light, if above 0"},
+    {SR_PARAM_FLOAT, "power", "lm", -INFINITY, INFINITY, NAN, offsetof(struct goniometric, power),
+     "luminous flux of the whole light, if above 0"},
     {.name = NULL},
 };
 
@@ -35,8 +40,11 @@ static sr_status check_image(const struct goniometric *m, struct sr_error *error
     if (!m->filename || !t->width)
         return sr_fail(error, SR_ERROR_INPUT, "a goniometric light needs the parameter \"filename\"");
     if (t->width != t->height)
-        return sr_fail(error, SR_ERROR_INPUT, "%s: the image of a goniometric light must be square, an equal-area octahedral map, or a latitude-longitude "
-                       "map of 2 x 1, but is %u x %u", m->filename, t->width, t->height);
+        return sr_fail(
+            error, SR_ERROR_INPUT,
+            "%s: the image of a goniometric light must be square, an equal-area octahedral map, or a latitude-longitude "
+            "map of 2 x 1, but is %u x %u",
+            m->filename, t->width, t->height);
     return sr_light_check_finite(t, m->filename, error);
 }
 
@@ -64,7 +72,8 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
         return error->status;
     if (!(m->mean > 0) && m->power > 0)
         return sr_fail(error, SR_ERROR_INPUT, "%s: is black, so that it cannot be scaled to a power", m->filename);
-    if (sr_light_set_brightness(&m->I, m->common.space, m->common.is_absolute, m->scale, m->power / (4 * SR_PI * m->mean), error))
+    if (sr_light_set_brightness(&m->I, m->common.space, m->common.is_absolute, m->scale,
+                                m->power / (4 * SR_PI * m->mean), error))
         return error->status;
     const struct sr_transform *t = &m->common.light_to_world;
     static const float swap[4][4] = {{1, 0, 0, 0}, {0, 0, 1, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}};
@@ -75,7 +84,9 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
         return sr_fail(error, SR_ERROR_INPUT, "the place of a goniometric light is not finite");
     m->flux = 4 * SR_PI * m->mean * (float)sr_spd_luminous_integral(&m->I);
     m->choice = sr_light_choice_weight(&m->I) * peak;
-    return isfinite(m->flux) && isfinite(m->choice) ? SR_OK : sr_fail(error, SR_ERROR_INPUT, "%s: the emission is not finite", m->filename);
+    return isfinite(m->flux) && isfinite(m->choice)
+               ? SR_OK
+               : sr_fail(error, SR_ERROR_INPUT, "%s: the emission is not finite", m->filename);
 }
 
 static float along(const struct goniometric *m, sr_vec3 w, float *jacobian)
@@ -85,7 +96,8 @@ static float along(const struct goniometric *m, sr_vec3 w, float *jacobian)
     return sr_light_grey(t, sr_light_texel_index(uv.x, t->width), sr_light_texel_index(uv.y, t->height));
 }
 
-static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
+static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w,
+                   struct sr_light_sample *s)
 {
     (void)u;
     const struct goniometric *m = self;
@@ -97,7 +109,8 @@ static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u
     float Y = along(m, sr_neg(wi), &jacobian);
     if (!(Y > 0))
         return false;
-    *s = (struct sr_light_sample){.L = sr_spd_eval(&m->I, w->lambda) * (Y / r2), .wi = wi, .distance = r, .p = m->p, .pdf = 1, .is_delta = true};
+    *s = (struct sr_light_sample){
+        .L = sr_spd_eval(&m->I, w->lambda) * (Y / r2), .wi = wi, .distance = r, .p = m->p, .pdf = 1, .is_delta = true};
     return true;
 }
 
@@ -110,7 +123,8 @@ static void emit_pdf(const void *self, sr_vec3 n, sr_vec3 w, float *pdf_area, fl
     *pdf_direction = m->mean > 0 ? Y / m->mean * jacobian * (SR_INV_PI / 4) : 0;
 }
 
-static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w, struct sr_light_ray *ray)
+static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w,
+                 struct sr_light_ray *ray)
 {
     (void)u_place;
     const struct goniometric *m = self;
@@ -136,12 +150,24 @@ static float power(const void *self)
 static bool bounds(const void *self, struct sr_light_bounds *b)
 {
     const struct goniometric *m = self;
-    *b = (struct sr_light_bounds){.box = {m->p, m->p}, .axis = {0, 0, 1}, .cos_theta_o = -1, .cos_theta_e = 0, .power = 4 * SR_PI * m->choice};
+    *b = (struct sr_light_bounds){
+        .box = {m->p, m->p}, .axis = {0, 0, 1}, .cos_theta_o = -1, .cos_theta_e = 0, .power = 4 * SR_PI * m->choice};
     return true;
 }
 
 const struct sr_light_model sr_light_goniometric = {
-    .name = "goniometric", .params = params, .size = sizeof(struct goniometric), .is_delta = true, .wants_octahedral_map = true, .prepare = prepare,
-    .sample = sample, .pdf = sr_light_delta_pdf, .Le = sr_light_delta_Le, .bounds = bounds, .emit = emit, .emit_pdf = emit_pdf,
-    .emit_weight = emit_weight, .power = power,
+    .name = "goniometric",
+    .params = params,
+    .size = sizeof(struct goniometric),
+    .is_delta = true,
+    .wants_octahedral_map = true,
+    .prepare = prepare,
+    .sample = sample,
+    .pdf = sr_light_delta_pdf,
+    .Le = sr_light_delta_Le,
+    .bounds = bounds,
+    .emit = emit,
+    .emit_pdf = emit_pdf,
+    .emit_weight = emit_weight,
+    .power = power,
 };

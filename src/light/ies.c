@@ -5,9 +5,9 @@
  *     Phi  = scale INTEGRAL I_file dw, or with `power`: Phi = scale * power           [lm]; [W] of absolute spectra
  *
  * The luminaire hangs in its own space: gamma 0 along -z, C 0 along +x, C 90 along +y; scenes whose up is y turn it by
- * Rotate -90 1 0 0. Limits: far field: without extent, so that receivers nearer than about five times the luminaire's size get
- * another amount than from the real one; one colour in all directions; a transform that is no similarity bends the
- * distribution. */
+ * Rotate -90 1 0 0. Limits: far field: without extent, so that receivers nearer than about five times the luminaire's
+ * size get another amount than from the real one; one colour in all directions; a transform that is no similarity bends
+ * the distribution. */
 #include "light/emission.h"
 #include "measured/measured.h"
 
@@ -28,9 +28,11 @@ struct ies {
 
 static const struct sr_param params[] = {
     {SR_PARAM_FILE, "filename", "1", 0, 0, 0, offsetof(struct ies, filename), "IES LM-63 or EULUMDAT file"},
-    {SR_PARAM_ILLUMINANT, "I", "cd", 0, INFINITY, NAN, offsetof(struct ies, I), "spectrum; only its shape counts, rgb its brightness, too"},
+    {SR_PARAM_ILLUMINANT, "I", "cd", 0, INFINITY, NAN, offsetof(struct ies, I),
+     "spectrum; only its shape counts, rgb its brightness, too"},
     {SR_PARAM_FLOAT, "scale", "1", 0, INFINITY, 1, offsetof(struct ies, scale), "factor"},
-    {SR_PARAM_FLOAT, "power", "lm", -INFINITY, INFINITY, NAN, offsetof(struct ies, power), "luminous flux of the whole light instead of the file's, if above 0"},
+    {SR_PARAM_FLOAT, "power", "lm", -INFINITY, INFINITY, NAN, offsetof(struct ies, power),
+     "luminous flux of the whole light instead of the file's, if above 0"},
     {SR_PARAM_POINT3, "from", "m", -INFINITY, INFINITY, 0, offsetof(struct ies, from), "where it is"},
     {.name = NULL},
 };
@@ -57,7 +59,8 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     if (!sr_is_finite(m->p) || !sr_is_finite(m->axis))
         return sr_fail(error, SR_ERROR_INPUT, "the place of an ies light is not finite");
     // the file is in candela; where a power is given, that is in the scene's unit, and the file is a shape
-    sr_status status = m->power > 0 ? sr_light_set_brightness(&m->I, m->common.space, m->common.is_absolute, m->scale, (float)((double)m->power / flux), error)
+    sr_status status = m->power > 0 ? sr_light_set_brightness(&m->I, m->common.space, m->common.is_absolute, m->scale,
+                                                              (float)((double)m->power / flux), error)
                                     : sr_light_normalise(&m->I, m->common.space, m->scale, error);
     if (status != SR_OK)
         return status;
@@ -70,7 +73,9 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     m->determinant = fabsf(sr_dot(rows[0], sr_cross(rows[1], rows[2])));
     m->flux = (float)(sr_spd_luminous_integral(&m->I) * flux);
     m->choice = (float)((double)sr_light_choice_weight(&m->I) * peak);
-    return isfinite(m->flux) && isfinite(m->choice) ? SR_OK : sr_fail(error, SR_ERROR_INPUT, "%s: the emission is not finite", m->filename);
+    return isfinite(m->flux) && isfinite(m->choice)
+               ? SR_OK
+               : sr_fail(error, SR_ERROR_INPUT, "%s: the emission is not finite", m->filename);
 }
 
 /* of the file toward w in the world [cd] */
@@ -80,7 +85,8 @@ static float intensity(const struct ies *m, sr_vec3 w)
     return (float)sr_photometry_intensity_along(m->photometry, d);
 }
 
-static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
+static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w,
+                   struct sr_light_sample *s)
 {
     (void)u;
     const struct ies *m = self;
@@ -92,7 +98,8 @@ static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u
     float I = intensity(m, sr_neg(wi));
     if (!(I > 0))
         return false;
-    *s = (struct sr_light_sample){.L = sr_spd_eval(&m->I, w->lambda) * (I / r2), .wi = wi, .distance = r, .p = m->p, .pdf = 1, .is_delta = true};
+    *s = (struct sr_light_sample){
+        .L = sr_spd_eval(&m->I, w->lambda) * (I / r2), .wi = wi, .distance = r, .p = m->p, .pdf = 1, .is_delta = true};
     return true;
 }
 
@@ -103,15 +110,18 @@ static void emit_pdf(const void *self, sr_vec3 n, sr_vec3 w, float *pdf_area, fl
     sr_vec3 d = sr_inverse_vector(&m->common.light_to_world, w);
     float length = sr_length(d);
     *pdf_area = 1;
-    *pdf_direction = sr_photometry_pdf(&m->guide, sr_scale(1 / length, d)) * m->determinant / (length * length * length);
+    *pdf_direction =
+        sr_photometry_pdf(&m->guide, sr_scale(1 / length, d)) * m->determinant / (length * length * length);
 }
 
-static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w, struct sr_light_ray *ray)
+static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w,
+                 struct sr_light_ray *ray)
 {
     (void)u_place;
     const struct ies *m = self;
     float unused;
-    sr_vec3 d = sr_photometry_sample(&m->guide, u_direction, &unused), out = sr_normalize(sr_transform_vector(&m->common.light_to_world, d));
+    sr_vec3 d = sr_photometry_sample(&m->guide, u_direction, &unused),
+            out = sr_normalize(sr_transform_vector(&m->common.light_to_world, d));
     *ray = (struct sr_light_ray){.from = {.p = m->p}, .w = out, .L = sr_spd_along(&m->I, w) * intensity(m, out)};
     emit_pdf(self, ray->from.n, out, &ray->pdf_area, &ray->pdf_direction);
     return ray->pdf_direction > 0 && !sr_spectrum_is_black(ray->L);
@@ -130,12 +140,27 @@ static float power(const void *self)
 static bool bounds(const void *self, struct sr_light_bounds *b)
 {
     const struct ies *m = self;
-    *b = (struct sr_light_bounds){.box = {m->p, m->p}, .axis = m->axis, .cos_theta_o = m->cos_reach, .cos_theta_e = 1, .power = 4 * SR_PI * m->choice};
+    *b = (struct sr_light_bounds){.box = {m->p, m->p},
+                                  .axis = m->axis,
+                                  .cos_theta_o = m->cos_reach,
+                                  .cos_theta_e = 1,
+                                  .power = 4 * SR_PI * m->choice};
     return true;
 }
 
 const struct sr_light_model sr_light_ies = {
-    .name = "ies", .params = params, .size = sizeof(struct ies), .is_delta = true, .reads_own_file = true, .prepare = prepare,
-    .sample = sample, .pdf = sr_light_delta_pdf, .Le = sr_light_delta_Le, .bounds = bounds, .emit = emit,
-    .emit_pdf = emit_pdf, .emit_weight = emit_weight, .power = power,
+    .name = "ies",
+    .params = params,
+    .size = sizeof(struct ies),
+    .is_delta = true,
+    .reads_own_file = true,
+    .prepare = prepare,
+    .sample = sample,
+    .pdf = sr_light_delta_pdf,
+    .Le = sr_light_delta_Le,
+    .bounds = bounds,
+    .emit = emit,
+    .emit_pdf = emit_pdf,
+    .emit_weight = emit_weight,
+    .power = power,
 };

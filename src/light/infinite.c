@@ -4,23 +4,27 @@
  *     uniform:  L(w) = L                                  E = pi L              [lx], of the hemisphere
  *     image:    L(w) = rgb(square(w)) * white * scale     p(w) = p(square(w)) / (4 pi)      [1/sr]
  *
- * The image is an equal-area octahedral map (Clarberg 2008), looked up without interpolation as pbrt-v4 does, so that its
- * texels are exactly the cells of the density. With `illuminance` the brightness is scaled so that a surface that faces the
- * light's +z receives scale * illuminance.
+ * The image is an equal-area octahedral map (Clarberg 2008), looked up without interpolation as pbrt-v4 does, so that
+ * its texels are exactly the cells of the density. With `illuminance` the brightness is scaled so that a surface that
+ * faces the light's +z receives scale * illuminance.
  *
- * The density is compensated for the directions that surfaces choose themselves (Karlik, Sik, Vevoda, Skrivan, Krivanek,
- * "MIS compensation", 2019): p ~ max(f - mean(f), 0); where it is 0 light still comes, found with weight 1 by the surface's
- * own choice. A uniform sky is never drawn at all, for the same reason. Estimators without such a choice must not use it. */
+ * The density is compensated for the directions that surfaces choose themselves (Karlik, Sik, Vevoda, Skrivan,
+ * Krivanek, "MIS compensation", 2019): p ~ max(f - mean(f), 0); where it is 0 light still comes, found with weight 1 by
+ * the surface's own choice. A uniform sky is never drawn at all, for the same reason. Estimators without such a choice
+ * must not use it. */
 #include "light/infinite.h"
 #include "light/pixels.h"
 
 enum { MOST_CELLS = 1 << 22 }; // 80 MiB
 
 const struct sr_param sr_infinite_params[] = {
-    {SR_PARAM_ILLUMINANT, "L", "cd/m^2", 0, INFINITY, NAN, offsetof(struct sr_infinite, L), "radiance; only its shape counts, rgb its brightness, too"},
+    {SR_PARAM_ILLUMINANT, "L", "cd/m^2", 0, INFINITY, NAN, offsetof(struct sr_infinite, L),
+     "radiance; only its shape counts, rgb its brightness, too"},
     {SR_PARAM_FLOAT, "scale", "1", 0, INFINITY, 1, offsetof(struct sr_infinite, scale), "factor"},
-    {SR_PARAM_FLOAT, "illuminance", "lx", -INFINITY, INFINITY, NAN, offsetof(struct sr_infinite, illuminance), "of a surface that faces the light's +z, if above 0"},
-    {SR_PARAM_FILE, "filename", "1", 0, 0, 0, offsetof(struct sr_infinite, filename), "image: square, an equal-area octahedral map, or 2 x 1, latitude and longitude"},
+    {SR_PARAM_FLOAT, "illuminance", "lx", -INFINITY, INFINITY, NAN, offsetof(struct sr_infinite, illuminance),
+     "of a surface that faces the light's +z, if above 0"},
+    {SR_PARAM_FILE, "filename", "1", 0, 0, 0, offsetof(struct sr_infinite, filename),
+     "image: square, an equal-area octahedral map, or 2 x 1, latitude and longitude"},
     {SR_PARAM_POINT3S, "portal", "m", -INFINITY, INFINITY, NAN, offsetof(struct sr_infinite, portal),
      "corners in the world of a rectangle through which alone the light comes: the side of (p3 - p0) x (p1 - p0) is outside"},
     {.name = NULL},
@@ -35,8 +39,9 @@ static void set_directions(struct sr_infinite *m)
             m->to_light[i][j] = t->inverse[i][j];
         m->columns[i] = (sr_vec3){t->m[0][i], t->m[1][i], t->m[2][i]};
     }
-    m->determinant = fabsf(a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
-                           a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]));
+    m->determinant =
+        fabsf(a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
+              a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]));
     m->is_rotation = true;
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j <= i; ++j)
@@ -54,7 +59,8 @@ static double upper_illuminance(const struct sr_texels *t)
             float cos_theta = sr_equal_area_square_to_sphere(p).z;
             struct sr_rgb c = sr_light_texel(t, x, y);
             if (cos_theta > 0)
-                sum += (double)cos_theta * (y_of_rgb[0] * (double)c.r + y_of_rgb[1] * (double)c.g + y_of_rgb[2] * (double)c.b);
+                sum += (double)cos_theta *
+                       (y_of_rgb[0] * (double)c.r + y_of_rgb[1] * (double)c.g + y_of_rgb[2] * (double)c.b);
         }
     return sum * 4 * (double)SR_PI / ((double)t->width * t->height);
 }
@@ -62,8 +68,10 @@ static double upper_illuminance(const struct sr_texels *t)
 static struct cell cell_of(const struct sr_infinite *m, size_t i)
 {
     const struct sr_texels *t = &m->common.texels;
-    struct sr_spd s = sr_spd_from_rgb_illuminant(t->space, sr_light_texel(t, (uint32_t)(i % t->width), (uint32_t)(i / t->width)));
-    sr_vec2 centre = {((float)(i % t->width) + 0.5f) / (float)t->width, ((float)(i / t->width) + 0.5f) / (float)t->height};
+    struct sr_spd s =
+        sr_spd_from_rgb_illuminant(t->space, sr_light_texel(t, (uint32_t)(i % t->width), (uint32_t)(i / t->width)));
+    sr_vec2 centre = {((float)(i % t->width) + 0.5f) / (float)t->width,
+                      ((float)(i / t->width) + 0.5f) / (float)t->height};
     return (struct cell){s.sigmoid, s.scale * m->factor, sr_piecewise2_pdf(&m->density, centre)};
 }
 
@@ -113,27 +121,34 @@ sr_status sr_infinite_prepare(void *self, struct sr_arena *arena, struct sr_erro
     const struct sr_texels *t = &m->common.texels;
     set_directions(m);
     if (!sr_infinite_is_image(m)) {
-        if (sr_light_set_brightness(&m->L, m->common.space, m->common.is_absolute, m->scale, m->illuminance * SR_INV_PI, error))
+        if (sr_light_set_brightness(&m->L, m->common.space, m->common.is_absolute, m->scale, m->illuminance * SR_INV_PI,
+                                    error))
             return error->status;
         m->luminance = (float)sr_spd_luminous_integral(&m->L);
         return SR_OK;
     }
     if (m->L.kind != SR_SPD_NONE)
-        return sr_fail(error, SR_ERROR_INPUT, "an infinite light takes \"L\" or \"filename\" (%s), not both", m->filename);
+        return sr_fail(error, SR_ERROR_INPUT, "an infinite light takes \"L\" or \"filename\" (%s), not both",
+                       m->filename);
     if (t->width != t->height)
-        return sr_fail(error, SR_ERROR_INPUT, "%s: an environment image must be square, an equal-area octahedral map, or a latitude-longitude map of 2 x 1, but is %u x %u", m->filename, t->width, t->height);
+        return sr_fail(
+            error, SR_ERROR_INPUT,
+            "%s: an environment image must be square, an equal-area octahedral map, or a latitude-longitude map of 2 x 1, but is %u x %u",
+            m->filename, t->width, t->height);
     if (sr_light_check_texels(t, m->filename, error))
         return error->status;
     double factor = (double)m->scale / sr_colour_space(t->space)->illuminant_luminous_integral;
     if (m->illuminance > 0) {
         double given = upper_illuminance(t);
         if (!(given > 0))
-            return sr_fail(error, SR_ERROR_INPUT, "%s: no light from above, so that it cannot be scaled to an illuminance", m->filename);
+            return sr_fail(error, SR_ERROR_INPUT,
+                           "%s: no light from above, so that it cannot be scaled to an illuminance", m->filename);
         factor *= (double)m->illuminance / given;
     }
     m->factor = (float)factor;
     m->white = sr_colour_space(t->space)->illuminant;
-    m->luminance = (float)(factor * sr_colour_space(t->space)->illuminant_luminous_integral * sr_light_mean_luminance(t));
+    m->luminance =
+        (float)(factor * sr_colour_space(t->space)->illuminant_luminous_integral * sr_light_mean_luminance(t));
     return build_density(m, arena, error) == SR_OK ? build_cells(m, arena, error) : error->status;
 }
 
@@ -195,18 +210,21 @@ float sr_infinite_blurred_grey(const struct sr_infinite *m, sr_vec3 wi)
     float dx = x - (float)i, dy = y - (float)j;
     for (uint32_t k = 0; k < 4; ++k) {
         uint32_t ix = i + (k & 1), iy = j + (k >> 1);
-        sum += (k & 1 ? dx : 1 - dx) * (k >> 1 ? dy : 1 - dy) * sr_light_grey(t, ix < t->width ? ix : t->width - 1, iy < t->height ? iy : t->height - 1);
+        sum += (k & 1 ? dx : 1 - dx) * (k >> 1 ? dy : 1 - dy) *
+               sr_light_grey(t, ix < t->width ? ix : t->width - 1, iy < t->height ? iy : t->height - 1);
     }
     return sum;
 }
 
-static sr_spectrum Le(const void *self, const struct sr_point *there, sr_vec3 w, const struct sr_wavelengths *wavelengths)
+static sr_spectrum Le(const void *self, const struct sr_point *there, sr_vec3 w,
+                      const struct sr_wavelengths *wavelengths)
 {
     (void)there;
     return sr_infinite_Le(self, sr_neg(w), wavelengths);
 }
 
-static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
+static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w,
+                   struct sr_light_sample *s)
 {
     (void)reference;
     const struct sr_infinite *m = self;
@@ -217,15 +235,16 @@ static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u
     if (!(pdf > 0))
         return false;
     sr_vec3 d = sr_equal_area_square_to_sphere(p);
-    sr_vec3 wi = sr_add(sr_add(sr_scale(d.x, m->columns[0]), sr_scale(d.y, m->columns[1])), sr_scale(d.z, m->columns[2]));
+    sr_vec3 wi =
+        sr_add(sr_add(sr_scale(d.x, m->columns[0]), sr_scale(d.y, m->columns[1])), sr_scale(d.z, m->columns[2]));
     float jacobian = 1;
     if (SR_UNLIKELY(!m->is_rotation)) { // |A d| = 1 / |A^-1 wi| for the unit vector wi along A d
         float length = sr_length(wi);
         jacobian = m->determinant * length * length * length;
         wi = sr_scale(1 / length, wi);
     }
-    *s = (struct sr_light_sample){.L = cell_Le(m, look_up(m, p), w), .wi = wi, .distance = INFINITY,
-                                  .pdf = pdf * jacobian / (4 * SR_PI)};
+    *s = (struct sr_light_sample){
+        .L = cell_Le(m, look_up(m, p), w), .wi = wi, .distance = INFINITY, .pdf = pdf * jacobian / (4 * SR_PI)};
     return !sr_spectrum_is_black(s->L);
 }
 
@@ -253,8 +272,8 @@ static sr_spectrum Le_pdf(const void *self, sr_vec3 from, sr_vec3 wi, const stru
     return cell_Le(m, c, w);
 }
 
-/* Half of the rays leave as `sample` draws them, half evenly: no ray carries more than twice the mean flux, and none that
- * carries anything has no chance. */
+/* Half of the rays leave as `sample` draws them, half evenly: no ray carries more than twice the mean flux, and none
+ * that carries anything has no chance. */
 static float emit_density(const struct sr_infinite *m, sr_vec3 wi)
 {
     if (!sr_infinite_is_image(m))
@@ -264,7 +283,8 @@ static float emit_density(const struct sr_infinite *m, sr_vec3 wi)
     return (0.5f + 0.5f * sr_piecewise2_pdf(&m->density, p)) * jacobian * (SR_INV_PI / 4);
 }
 
-static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w, struct sr_light_ray *ray)
+static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w,
+                 struct sr_light_ray *ray)
 {
     const struct sr_infinite *m = self;
     if (!(m->radius > 0))
@@ -278,9 +298,12 @@ static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const s
     sr_vec3 d = sr_equal_area_square_to_sphere(sr_infinite_is_image(m) ? p : u_direction);
     sr_vec3 wi = d;
     if (sr_infinite_is_image(m))
-        wi = sr_normalize(sr_add(sr_add(sr_scale(d.x, m->columns[0]), sr_scale(d.y, m->columns[1])), sr_scale(d.z, m->columns[2])));
-    *ray = (struct sr_light_ray){.from = {.p = sr_light_outside(m->centre, m->radius, wi, u_place)}, .w = sr_neg(wi),
-                                 .L = sr_infinite_is_image(m) ? cell_Le(m, look_up(m, p), w) : sr_spd_along(&m->L, w), .pdf_area = SR_INV_PI / sr_sqr(m->radius),
+        wi = sr_normalize(
+            sr_add(sr_add(sr_scale(d.x, m->columns[0]), sr_scale(d.y, m->columns[1])), sr_scale(d.z, m->columns[2])));
+    *ray = (struct sr_light_ray){.from = {.p = sr_light_outside(m->centre, m->radius, wi, u_place)},
+                                 .w = sr_neg(wi),
+                                 .L = sr_infinite_is_image(m) ? cell_Le(m, look_up(m, p), w) : sr_spd_along(&m->L, w),
+                                 .pdf_area = SR_INV_PI / sr_sqr(m->radius),
                                  .pdf_direction = emit_density(m, wi)};
     return ray->pdf_direction > 0 && !sr_spectrum_is_black(ray->L);
 }
@@ -297,7 +320,8 @@ static void emit_pdf(const void *self, sr_vec3 n, sr_vec3 w, float *pdf_area, fl
 static float emit_weight(const void *self)
 {
     const struct sr_infinite *m = self;
-    return 4 * SR_PI * SR_PI * sr_sqr(m->radius) * (sr_infinite_is_image(m) ? sr_max(m->luminance, m->choice) : sr_light_choice_weight(&m->L));
+    return 4 * SR_PI * SR_PI * sr_sqr(m->radius) *
+           (sr_infinite_is_image(m) ? sr_max(m->luminance, m->choice) : sr_light_choice_weight(&m->L));
 }
 
 static float power(const void *self)
@@ -310,12 +334,26 @@ static bool bounds(const void *self, struct sr_light_bounds *b)
 {
     const struct sr_infinite *m = self;
     float radius = m->radius > 0 ? m->radius : 1; // a scene without extent is lit, too
-    *b = (struct sr_light_bounds){.power = sr_infinite_is_image(m) ? 4 * SR_PI * SR_PI * radius * radius * sr_max(m->luminance, m->choice) : 0};
+    *b = (struct sr_light_bounds){
+        .power = sr_infinite_is_image(m) ? 4 * SR_PI * SR_PI * radius * radius * sr_max(m->luminance, m->choice) : 0};
     return false;
 }
 
 const struct sr_light_model sr_light_infinite = {
-    .name = "infinite", .params = sr_infinite_params, .size = sizeof(struct sr_infinite), .is_infinite = true, .wants_octahedral_map = true, .prepare = sr_infinite_prepare,
-    .place = place, .sample = sample, .pdf = pdf, .Le = Le, .Le_pdf = Le_pdf, .bounds = bounds, .emit = emit,
-    .emit_pdf = emit_pdf, .emit_weight = emit_weight, .power = power,
+    .name = "infinite",
+    .params = sr_infinite_params,
+    .size = sizeof(struct sr_infinite),
+    .is_infinite = true,
+    .wants_octahedral_map = true,
+    .prepare = sr_infinite_prepare,
+    .place = place,
+    .sample = sample,
+    .pdf = pdf,
+    .Le = Le,
+    .Le_pdf = Le_pdf,
+    .bounds = bounds,
+    .emit = emit,
+    .emit_pdf = emit_pdf,
+    .emit_weight = emit_weight,
+    .power = power,
 };

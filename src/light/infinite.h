@@ -5,7 +5,8 @@
 
 #include "light/emission.h"
 
-/* What a texel radiates, scale times sigmoid times white, and how densely it is drawn: in one place, for one look-up. */
+/* What a texel radiates, scale times sigmoid times white, and how densely it is drawn: in one place, for one look-up.
+ */
 struct cell {
     struct sr_sigmoid sigmoid;
     float scale;   // [1]
@@ -19,22 +20,23 @@ struct sr_infinite {
     const char *filename;
     struct sr_slice portal; // sr_vec3: corners, for sr_light_portal
     // derived
-    float factor;                     // of the texels' illuminant spectra
-    const struct sr_table *white;     // of those
-    const struct cell *cells;         // one a texel; NULL: too many
-    struct sr_piecewise2 density;     // over the square
-    float to_light[3][3];             // world to light
-    sr_vec3 columns[3];               // light to world
-    float determinant;                // of to_light: a transform that is no rotation squeezes solid angles
-    bool is_rotation;                 // or a mirror
-    float luminance, choice;          // [cd/m^2] mean over the sphere
-    sr_vec3 centre;                   // of the scene's sphere [m]
-    float radius;                     // [m]
+    float factor;                 // of the texels' illuminant spectra
+    const struct sr_table *white; // of those
+    const struct cell *cells;     // one a texel; NULL: too many
+    struct sr_piecewise2 density; // over the square
+    float to_light[3][3];         // world to light
+    sr_vec3 columns[3];           // light to world
+    float determinant;            // of to_light: a transform that is no rotation squeezes solid angles
+    bool is_rotation;             // or a mirror
+    float luminance, choice;      // [cd/m^2] mean over the sphere
+    sr_vec3 centre;               // of the scene's sphere [m]
+    float radius;                 // [m]
 };
 
 extern const struct sr_param sr_infinite_params[];
 sr_status sr_infinite_prepare(void *self, struct sr_arena *arena, struct sr_error *error);
-sr_spectrum sr_infinite_Le(const struct sr_infinite *m, sr_vec3 wi, const struct sr_wavelengths *w); // that arrives from wi
+sr_spectrum sr_infinite_Le(const struct sr_infinite *m, sr_vec3 wi,
+                           const struct sr_wavelengths *w);              // that arrives from wi
 float sr_infinite_blurred_grey(const struct sr_infinite *m, sr_vec3 wi); // of the image, between the texels' centres
 
 static inline bool sr_infinite_is_image(const struct sr_infinite *m)

@@ -3,25 +3,25 @@
  *
  *     estimate = L / (pmf pdf)
  *
- * With the tree, infinite lights that can be drawn (images, distant lights) have the share 1 / (n + 1) each, the tree the rest.
- * Only lights with power are chosen; where there is but one, it is chosen always. */
+ * With the tree, infinite lights that can be drawn (images, distant lights) have the share 1 / (n + 1) each, the tree
+ * the rest. Only lights with power are chosen; where there is but one, it is chosen always. */
 #include "light/tree.h"
 
 #include <string.h>
 
-#define NEVER UINT32_MAX      // place of a light that is not chosen
+#define NEVER UINT32_MAX          // place of a light that is not chosen
 #define INFINITE (UINT32_MAX - 1) // of one that is, outside the tree
 
 struct choice {
     struct sr_light_tree tree;
-    struct sr_alias alias;     // power: over all lights
+    struct sr_alias alias;        // power: over all lights
     const double *area, *emitted; // [m^2] that glows, [cd sr] that leaves before each block of lights, and in all
-    const uint32_t *place;     // of each light: in the tree, NEVER or INFINITE
-    const uint32_t *choosable; // uniform: those with power
+    const uint32_t *place;        // of each light: in the tree, NEVER or INFINITE
+    const uint32_t *choosable;    // uniform: those with power
     uint32_t choosable_count;
-    const uint32_t *outside;   // tree: infinite lights with power
+    const uint32_t *outside; // tree: infinite lights with power
     uint32_t outside_count;
-    float share;               // tree: of each of those, and of the tree
+    float share; // tree: of each of those, and of the tree
 };
 
 static float power_of(struct sr_light light)
@@ -49,7 +49,9 @@ static const struct sr_table *white_of(struct sr_light light)
     if (light.model != &sr_light_area)
         return sr_colour_space(((const struct sr_light_common *)light.self)->space)->illuminant;
     const struct sr_light_emission *e = ((const struct sr_light_area *)light.self)->emission;
-    return e->texels.width ? sr_colour_space(e->texels.space)->illuminant : e->emitted.kind == SR_SPD_ILLUMINANT ? e->emitted.table : NULL;
+    return e->texels.width                        ? sr_colour_space(e->texels.space)->illuminant
+           : e->emitted.kind == SR_SPD_ILLUMINANT ? e->emitted.table
+                                                  : NULL;
 }
 
 static float emitted_by(struct sr_light light)
@@ -79,7 +81,8 @@ static sr_status build_choice(struct sr_arena *arena, struct sr_lights *l, struc
     uint32_t n = l->count, infinite_count = 0;
     struct choice *c = sr_arena_alloc(arena, sizeof *c);
     uint32_t *place = sr_arena_alloc(arena, n * sizeof *place);
-    uint32_t *choosable = sr_alloc(n * sizeof *choosable), *outside = sr_alloc(n * sizeof *outside), *infinite = sr_alloc(n * sizeof *infinite);
+    uint32_t *choosable = sr_alloc(n * sizeof *choosable), *outside = sr_alloc(n * sizeof *outside),
+             *infinite = sr_alloc(n * sizeof *infinite);
     float *weights = sr_alloc(n * sizeof *weights);
     bool is_built = c && place && choosable && outside && infinite && weights;
     for (uint32_t i = 0; is_built && i < n; ++i) {
@@ -99,7 +102,9 @@ static sr_status build_choice(struct sr_arena *arena, struct sr_lights *l, struc
         l->infinite = sr_arena_copy(arena, infinite, infinite_count * sizeof *infinite);
         l->infinite_count = infinite_count;
         l->only = c->choosable_count == 1 ? choosable[0] + 1 : 0;
-        c->choosable = l->choice == SR_LIGHTS_UNIFORM ? sr_arena_copy(arena, choosable, c->choosable_count * sizeof *choosable) : NULL;
+        c->choosable = l->choice == SR_LIGHTS_UNIFORM
+                           ? sr_arena_copy(arena, choosable, c->choosable_count * sizeof *choosable)
+                           : NULL;
         is_built = c->outside && l->infinite && (c->choosable || l->choice != SR_LIGHTS_UNIFORM);
     }
     if (is_built && l->choice == SR_LIGHTS_POWER && c->choosable_count > 1)
@@ -116,18 +121,20 @@ static sr_status build_choice(struct sr_arena *arena, struct sr_lights *l, struc
     l->tree = c;
     bool has_finite = c->choosable_count > c->outside_count;
     c->share = 1 / (float)(c->outside_count + (has_finite ? 1 : 0));
-    return l->choice == SR_LIGHTS_BVH && has_finite ? sr_light_tree_build(arena, l->lights, n, &c->tree, place, error) : SR_OK;
+    return l->choice == SR_LIGHTS_BVH && has_finite ? sr_light_tree_build(arena, l->lights, n, &c->tree, place, error)
+                                                    : SR_OK;
 }
 
-sr_status sr_lights_build(struct sr_arena *arena, const struct sr_light *lights, uint32_t count, enum sr_light_choice choice,
-                          struct sr_lights *out, struct sr_error *error)
+sr_status sr_lights_build(struct sr_arena *arena, const struct sr_light *lights, uint32_t count,
+                          enum sr_light_choice choice, struct sr_lights *out, struct sr_error *error)
 {
-    *out = (struct sr_lights){.lights = lights, .count = count, .choice = choice, .white = count ? white_of(lights[0]) : NULL};
+    *out = (struct sr_lights){
+        .lights = lights, .count = count, .choice = choice, .white = count ? white_of(lights[0]) : NULL};
     return count ? build_choice(arena, out, error) : SR_OK;
 }
 
-/* The 24 bits of u do not suffice to reach each of a million lights with its probability: what is below them comes from a
- * hash of u and the place. */
+/* The 24 bits of u do not suffice to reach each of a million lights with its probability: what is below them comes from
+ * a hash of u and the place. */
 static double with_more_bits(float u, sr_vec3 p)
 {
     uint32_t bits[4];
@@ -180,10 +187,12 @@ float sr_lights_pmf(const struct sr_lights *lights, const struct sr_point *x, ui
         return 1 / (float)c->choosable_count;
     if (lights->choice == SR_LIGHTS_POWER)
         return c->alias.pmf[index];
-    return c->place[index] == INFINITE ? c->share : c->share * sr_light_tree_pmf(&c->tree, x->p, x->ns, c->place[index]);
+    return c->place[index] == INFINITE ? c->share
+                                       : c->share * sr_light_tree_pmf(&c->tree, x->p, x->ns, c->place[index]);
 }
 
-static bool pick_by(const struct sr_lights *lights, const double *before, weight_of *weight, double u, uint32_t *index, float *pmf)
+static bool pick_by(const struct sr_lights *lights, const double *before, weight_of *weight, double u, uint32_t *index,
+                    float *pmf)
 {
     uint32_t lo = 0, hi = block_count(lights->count);
     double total = before[hi], left = u * total;
@@ -220,7 +229,8 @@ static float pmf_by(const struct sr_lights *lights, const double *before, weight
     return total > 0 ? (float)((double)weight(lights->lights[index]) / total) : 0;
 }
 
-bool sr_lights_pick_by_area(const struct sr_lights *lights, const struct sr_point *x, float u, uint32_t *index, float *pmf)
+bool sr_lights_pick_by_area(const struct sr_lights *lights, const struct sr_point *x, float u, uint32_t *index,
+                            float *pmf)
 {
     const struct choice *c = lights->tree;
     return c && pick_by(lights, c->area, glowing_area, with_more_bits(u, x->p), index, pmf);
@@ -232,8 +242,8 @@ float sr_lights_pmf_by_area(const struct sr_lights *lights, uint32_t index)
     return c ? pmf_by(lights, c->area, glowing_area, index) : 0;
 }
 
-bool sr_lights_emit(const struct sr_lights *lights, float u_light, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w,
-                    struct sr_light_ray *ray)
+bool sr_lights_emit(const struct sr_lights *lights, float u_light, sr_vec2 u_place, sr_vec2 u_direction,
+                    const struct sr_wavelengths *w, struct sr_light_ray *ray)
 {
     const struct choice *c = lights->tree;
     double u = with_more_bits(u_light, (sr_vec3){u_place.x, u_place.y, u_direction.x});

@@ -4,10 +4,12 @@
 
 #include <string.h>
 
-extern const struct sr_light_model sr_light_point, sr_light_spot, sr_light_ies, sr_light_goniometric, sr_light_projection, sr_light_distant, sr_light_infinite;
+extern const struct sr_light_model sr_light_point, sr_light_spot, sr_light_ies, sr_light_goniometric,
+    sr_light_projection, sr_light_distant, sr_light_infinite;
 
 const struct sr_light_model *const sr_light_models[] = {
-    &sr_light_point, &sr_light_spot, &sr_light_ies, &sr_light_goniometric, &sr_light_projection, &sr_light_distant, &sr_light_infinite, NULL,
+    &sr_light_point,      &sr_light_spot,    &sr_light_ies,      &sr_light_goniometric,
+    &sr_light_projection, &sr_light_distant, &sr_light_infinite, NULL,
 };
 
 const struct sr_light_model *sr_light_model_find(const char *name)
@@ -35,7 +37,8 @@ size_t sr_light_absolute_offset(const struct sr_light_model *model)
 
 size_t sr_light_texels_offset(const struct sr_light_model *model)
 {
-    for (const struct sr_param *row = model == &sr_light_area || model->reads_own_file ? NULL : model->params; row && row->name; ++row)
+    for (const struct sr_param *row = model == &sr_light_area || model->reads_own_file ? NULL : model->params;
+         row && row->name; ++row)
         if (row->kind == SR_PARAM_FILE)
             return offsetof(struct sr_light_common, texels);
     return SIZE_MAX;

@@ -4,8 +4,8 @@
  *     s(lambda) = factor * scale * sigmoid(lambda) * white(lambda)
  *     square texel = mean over its solid angle of L(theta, phi),    u = phi / (2 pi), v = theta / pi of the map
  *
- * Equal-area octahedral maps: Clarberg 2008. What is converted is scaled by one factor near 1, so that its luminance over the
- * whole sphere is that of the map, to rounding. */
+ * Equal-area octahedral maps: Clarberg 2008. What is converted is scaled by one factor near 1, so that its luminance
+ * over the whole sphere is that of the map, to rounding. */
 #include "light/pixels.h"
 
 enum { MOST_CELLS = 1 << 22 };
@@ -14,7 +14,8 @@ struct sr_light_turn sr_light_turn_of(const struct sr_transform *light_to_world)
 {
     struct sr_light_turn t;
     for (int i = 0; i < 3; ++i) {
-        t.rows[i] = (sr_vec3){light_to_world->inverse[i][0], light_to_world->inverse[i][1], light_to_world->inverse[i][2]};
+        t.rows[i] =
+            (sr_vec3){light_to_world->inverse[i][0], light_to_world->inverse[i][1], light_to_world->inverse[i][2]};
         t.columns[i] = (sr_vec3){light_to_world->m[0][i], light_to_world->m[1][i], light_to_world->m[2][i]};
     }
     t.determinant = fabsf(sr_dot(t.rows[0], sr_cross(t.rows[1], t.rows[2])));
@@ -27,10 +28,11 @@ static struct sr_light_pixel pixel_of(const struct sr_light_pixels *p, uint32_t 
     return (struct sr_light_pixel){s.sigmoid, s.scale * p->factor};
 }
 
-sr_status sr_light_pixels_build(struct sr_light_pixels *p, const struct sr_texels *texels, float factor, const char *filename,
-                                struct sr_arena *arena, struct sr_error *error)
+sr_status sr_light_pixels_build(struct sr_light_pixels *p, const struct sr_texels *texels, float factor,
+                                const char *filename, struct sr_arena *arena, struct sr_error *error)
 {
-    *p = (struct sr_light_pixels){.texels = texels, .white = sr_colour_space(texels->space)->illuminant, .factor = factor};
+    *p = (struct sr_light_pixels){
+        .texels = texels, .white = sr_colour_space(texels->space)->illuminant, .factor = factor};
     size_t n = (size_t)texels->width * texels->height;
     if (n > MOST_CELLS)
         return SR_OK;
@@ -66,10 +68,13 @@ static void convert_row(void *context, uint64_t y)
     for (uint32_t x = 0; x < c->side; ++x) {
         struct sr_rgb sum = {0};
         for (int k = 0; k < SUB * SUB; ++k) {
-            sr_vec2 uv = {((float)x + ((float)(k % SUB) + 0.5f) / SUB) / (float)c->side, ((float)y + ((float)(k / SUB) + 0.5f) / SUB) / (float)c->side};
+            sr_vec2 uv = {((float)x + ((float)(k % SUB) + 0.5f) / SUB) / (float)c->side,
+                          ((float)y + ((float)(k / SUB) + 0.5f) / SUB) / (float)c->side};
             sr_vec3 d = sr_equal_area_square_to_sphere(uv);
-            float u = sr_angle_of(d.y, d.x) / (2 * SR_PI), v = sr_angle_of(sr_safe_sqrt(d.x * d.x + d.y * d.y), d.z) / SR_PI;
-            struct sr_rgb t = sr_light_texel(c->map, sr_light_texel_index(u, c->map->width), sr_light_texel_index(v, c->map->height));
+            float u = sr_angle_of(d.y, d.x) / (2 * SR_PI),
+                  v = sr_angle_of(sr_safe_sqrt(d.x * d.x + d.y * d.y), d.z) / SR_PI;
+            struct sr_rgb t =
+                sr_light_texel(c->map, sr_light_texel_index(u, c->map->width), sr_light_texel_index(v, c->map->height));
             sum = (struct sr_rgb){sum.r + t.r, sum.g + t.g, sum.b + t.b};
         }
         float *out = c->square + ((size_t)y * c->side + x) * 3;

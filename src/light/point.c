@@ -12,14 +12,16 @@ struct point {
     struct sr_spd I;
     float scale, power;
     sr_vec3 from;
-    sr_vec3 p;                         // derived [m]
-    float luminous, choice;            // [cd]
+    sr_vec3 p;              // derived [m]
+    float luminous, choice; // [cd]
 };
 
 static const struct sr_param params[] = {
-    {SR_PARAM_ILLUMINANT, "I", "cd", 0, INFINITY, NAN, offsetof(struct point, I), "intensity; only its shape counts, rgb its brightness, too"},
+    {SR_PARAM_ILLUMINANT, "I", "cd", 0, INFINITY, NAN, offsetof(struct point, I),
+     "intensity; only its shape counts, rgb its brightness, too"},
     {SR_PARAM_FLOAT, "scale", "1", 0, INFINITY, 1, offsetof(struct point, scale), "factor"},
-    {SR_PARAM_FLOAT, "power", "lm", -INFINITY, INFINITY, NAN, offsetof(struct point, power), "luminous flux of the whole light, if above 0"},
+    {SR_PARAM_FLOAT, "power", "lm", -INFINITY, INFINITY, NAN, offsetof(struct point, power),
+     "luminous flux of the whole light, if above 0"},
     {SR_PARAM_POINT3, "from", "m", -INFINITY, INFINITY, 0, offsetof(struct point, from), "where it is"},
     {.name = NULL},
 };
@@ -38,7 +40,8 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     return SR_OK;
 }
 
-static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
+static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w,
+                   struct sr_light_sample *s)
 {
     (void)u;
     const struct point *m = self;
@@ -46,17 +49,25 @@ static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u
     float r2 = sr_length2(d), r = sqrtf(r2);
     if (!(r2 > 0))
         return false;
-    *s = (struct sr_light_sample){.L = sr_spd_eval(&m->I, w->lambda) / r2, .wi = sr_scale(1 / r, d), .distance = r,
-                                  .p = m->p, .pdf = 1, .is_delta = true};
+    *s = (struct sr_light_sample){.L = sr_spd_eval(&m->I, w->lambda) / r2,
+                                  .wi = sr_scale(1 / r, d),
+                                  .distance = r,
+                                  .p = m->p,
+                                  .pdf = 1,
+                                  .is_delta = true};
     return true;
 }
 
-static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w, struct sr_light_ray *ray)
+static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w,
+                 struct sr_light_ray *ray)
 {
     (void)u_place;
     const struct point *m = self;
-    *ray = (struct sr_light_ray){.from = {.p = m->p}, .w = sr_warp_uniform_sphere(u_direction), .L = sr_spd_along(&m->I, w),
-                                 .pdf_area = 1, .pdf_direction = SR_INV_PI / 4};
+    *ray = (struct sr_light_ray){.from = {.p = m->p},
+                                 .w = sr_warp_uniform_sphere(u_direction),
+                                 .L = sr_spd_along(&m->I, w),
+                                 .pdf_area = 1,
+                                 .pdf_direction = SR_INV_PI / 4};
     return true;
 }
 
@@ -75,12 +86,22 @@ static float power(const void *self)
 static bool bounds(const void *self, struct sr_light_bounds *b)
 {
     const struct point *m = self;
-    *b = (struct sr_light_bounds){.box = {m->p, m->p}, .axis = {0, 0, 1}, .cos_theta_o = -1, .cos_theta_e = 0, .power = 4 * SR_PI * m->choice};
+    *b = (struct sr_light_bounds){
+        .box = {m->p, m->p}, .axis = {0, 0, 1}, .cos_theta_o = -1, .cos_theta_e = 0, .power = 4 * SR_PI * m->choice};
     return true;
 }
 
 const struct sr_light_model sr_light_point = {
-    .name = "point", .params = params, .size = sizeof(struct point), .is_delta = true, .prepare = prepare,
-    .sample = sample, .pdf = sr_light_delta_pdf, .Le = sr_light_delta_Le, .bounds = bounds, .emit = emit, .emit_pdf = emit_pdf,
+    .name = "point",
+    .params = params,
+    .size = sizeof(struct point),
+    .is_delta = true,
+    .prepare = prepare,
+    .sample = sample,
+    .pdf = sr_light_delta_pdf,
+    .Le = sr_light_delta_Le,
+    .bounds = bounds,
+    .emit = emit,
+    .emit_pdf = emit_pdf,
     .power = power,
 };

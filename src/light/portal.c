@@ -4,13 +4,13 @@
  *     L(x, wi) = sky(wi) where the ray from x toward wi crosses the portal from inside, else 0
  *     Phi      = A INTEGRAL sky(w) cos_theta dw over the outer hemisphere                                        [lm]
  *
- * In the portal's frame, z outward, directions are (alpha, beta) = (atan2(x, z), atan2(y, z)) [rad], in which the portal is
- * an upright rectangle as seen from anywhere, dw = (1 + tx^2)(1 + ty^2) / (1 + tx^2 + ty^2)^(3/2) dalpha dbeta with t the
- * tangents. A piecewise constant density over (alpha, beta) is drawn within that rectangle through its summed area table
- * (Bitterli, Wyman, Pharr, Shirley, Lefohn, Jarosz, "Portal-masked environment map sampling", 2015; Pharr, Jakob & Humphreys 2023,
- * 12.5.3). A uniform sky is drawn evenly by solid angle instead. Unlike pbrt-v4, which resamples the image, the radiance is that
- * of the sky's own texels: the table is for drawing only.
- * Limits: light that would come in elsewhere is dropped, as the scene asks; places outside the portal receive none. */
+ * In the portal's frame, z outward, directions are (alpha, beta) = (atan2(x, z), atan2(y, z)) [rad], in which the
+ * portal is an upright rectangle as seen from anywhere, dw = (1 + tx^2)(1 + ty^2) / (1 + tx^2 + ty^2)^(3/2) dalpha
+ * dbeta with t the tangents. A piecewise constant density over (alpha, beta) is drawn within that rectangle through its
+ * summed area table (Bitterli, Wyman, Pharr, Shirley, Lefohn, Jarosz, "Portal-masked environment map sampling", 2015;
+ * Pharr, Jakob & Humphreys 2023, 12.5.3). A uniform sky is drawn evenly by solid angle instead. Unlike pbrt-v4, which
+ * resamples the image, the radiance is that of the sky's own texels: the table is for drawing only. Limits: light that
+ * would come in elsewhere is dropped, as the scene asks; places outside the portal receive none. */
 #include "light/infinite.h"
 #include "light/pixels.h"
 
@@ -59,13 +59,14 @@ static double inside(const struct portal *m, struct window w)
 
 static double cell_value(const struct portal *m, double a, double b)
 {
-    uint32_t i = a * m->n < m->n ? (uint32_t)(a * m->n) : m->n - 1, j = b * m->n < m->n ? (uint32_t)(b * m->n) : m->n - 1;
+    uint32_t i = a * m->n < m->n ? (uint32_t)(a * m->n) : m->n - 1,
+             j = b * m->n < m->n ? (uint32_t)(b * m->n) : m->n - 1;
     const double *t = m->table + (size_t)j * (m->n + 1) + i, *u = t + m->n + 1;
     return (u[1] - u[0] - t[1] + t[0]) * m->n * m->n;
 }
 
-/* Where the integral over the window's part below x is the share u of the whole: along a, or along b. It is linear within a
- * cell. */
+/* Where the integral over the window's part below x is the share u of the whole: along a, or along b. It is linear
+ * within a cell. */
 static double invert(const struct portal *m, struct window w, bool along_a, double u)
 {
     double lo = along_a ? w.a0 : w.b0, hi = along_a ? w.a1 : w.b1, whole = inside(m, w), wanted = u * whole;
@@ -116,8 +117,8 @@ static bool window_of(const struct portal *m, sr_vec3 x, struct window *w)
     if (!(p.z > 0))
         return false;
     double z = (double)p.z, pi = 3.14159265358979323846;
-    *w = (struct window){atan2((double)p.x, z) / pi + 0.5, atan2((double)p.x + (double)m->width, z) / pi + 0.5, atan2((double)p.y, z) / pi + 0.5,
-                         atan2((double)p.y + (double)m->height, z) / pi + 0.5};
+    *w = (struct window){atan2((double)p.x, z) / pi + 0.5, atan2((double)p.x + (double)m->width, z) / pi + 0.5,
+                         atan2((double)p.y, z) / pi + 0.5, atan2((double)p.y + (double)m->height, z) / pi + 0.5};
     return w->a1 > w->a0 && w->b1 > w->b0;
 }
 
@@ -159,8 +160,10 @@ static sr_status set_frame(struct portal *m, struct sr_error *error)
     m->height = sr_length(m->ey);
     float size = sr_max(m->width, m->height);
     bool closes = sr_length(sr_sub(sr_add(p[1], m->ex), p[2])) < 2e-3f * size;
-    if (!(m->width > 0 && m->height > 0 && isfinite(size)) || !closes || !(fabsf(sr_dot(m->ex, m->ey)) < 1e-3f * m->width * m->height))
-        return sr_fail(error, SR_ERROR_INPUT, "\"portal\" is no rectangle: expected 4 corners in turn, with right angles between its sides");
+    if (!(m->width > 0 && m->height > 0 && isfinite(size)) || !closes ||
+        !(fabsf(sr_dot(m->ex, m->ey)) < 1e-3f * m->width * m->height))
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "\"portal\" is no rectangle: expected 4 corners in turn, with right angles between its sides");
     m->frame = sr_frame_from_zx(sr_normalize(sr_cross(m->ex, m->ey)), sr_scale(1 / m->width, m->ex));
     return SR_OK;
 }
@@ -170,9 +173,11 @@ static double density_of_cell(const struct portal *m, uint32_t i, uint32_t j, in
 {
     double sum = 0;
     for (int k = 0; k < looks * looks; ++k) {
-        sr_vec2 ab = {((float)i + ((float)(k % looks) + 0.5f) / (float)looks) / (float)m->n, ((float)j + ((float)(k / looks) + 0.5f) / (float)looks) / (float)m->n};
+        sr_vec2 ab = {((float)i + ((float)(k % looks) + 0.5f) / (float)looks) / (float)m->n,
+                      ((float)j + ((float)(k / looks) + 0.5f) / (float)looks) / (float)m->n};
         float solid_angle;
-        double grey = (double)sr_infinite_blurred_grey(&m->sky, direction_of(m, ab, &solid_angle)); // reaches beyond small suns
+        double grey =
+            (double)sr_infinite_blurred_grey(&m->sky, direction_of(m, ab, &solid_angle)); // reaches beyond small suns
         sum += (double)solid_angle * (grey + floor);
     }
     return sum / (looks * looks);
@@ -188,14 +193,16 @@ static double passing(const struct portal *m)
     double sum = 0;
     for (size_t k = 0; k < (size_t)side * side; ++k) {
         uint32_t x = (uint32_t)(k % side), y = (uint32_t)(k / side);
-        sr_vec3 d = sr_equal_area_square_to_sphere((sr_vec2){((float)x + 0.5f) / (float)side, ((float)y + 0.5f) / (float)side});
+        sr_vec3 d =
+            sr_equal_area_square_to_sphere((sr_vec2){((float)x + 0.5f) / (float)side, ((float)y + 0.5f) / (float)side});
         sr_vec3 wi = sr_light_turned_back(&turn, d);
         float cos_theta = sr_dot(wi, m->frame.z), jacobian;
         if (cos_theta <= 0)
             continue;
         sr_light_turned(&turn, wi, &jacobian);
         struct sr_rgb c = sr_light_texel(t, x / 2, y / 2);
-        sum += (double)(cos_theta / jacobian) * (y_of_rgb[0] * (double)c.r + y_of_rgb[1] * (double)c.g + y_of_rgb[2] * (double)c.b);
+        sum += (double)(cos_theta / jacobian) *
+               (y_of_rgb[0] * (double)c.r + y_of_rgb[1] * (double)c.g + y_of_rgb[2] * (double)c.b);
     }
     return sum * 4 * (double)SR_PI / ((double)side * side);
 }
@@ -248,7 +255,8 @@ static sr_vec3 point_at(const struct portal *m, sr_vec2 u)
     return sr_add(m->corner, sr_add(sr_scale(u.x, m->ex), sr_scale(u.y, m->ey)));
 }
 
-static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w, struct sr_light_sample *s)
+static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u, const struct sr_wavelengths *w,
+                   struct sr_light_sample *s)
 {
     const struct portal *m = self;
     struct window window;
@@ -293,7 +301,8 @@ static float pdf(const void *self, const struct sr_point *reference, sr_vec3 wi,
     return density(self, reference->p, wi);
 }
 
-static sr_spectrum Le(const void *self, const struct sr_point *there, sr_vec3 w, const struct sr_wavelengths *wavelengths)
+static sr_spectrum Le(const void *self, const struct sr_point *there, sr_vec3 w,
+                      const struct sr_wavelengths *wavelengths)
 {
     (void)there;
     const struct portal *m = self;
@@ -326,7 +335,8 @@ static void emit_pdf(const void *self, sr_vec3 n, sr_vec3 w, float *pdf_area, fl
 }
 
 // anywhere on the portal, inward: a uniform sky by the cosine, an image by what its directions send
-static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w, struct sr_light_ray *ray)
+static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const struct sr_wavelengths *w,
+                 struct sr_light_ray *ray)
 {
     const struct portal *m = self;
     sr_vec3 wi;
@@ -338,7 +348,8 @@ static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const s
         wi = direction_of(m, ab, &unused);
     } else
         wi = sr_to_world(&m->frame, sr_warp_cosine_hemisphere(u_direction));
-    *ray = (struct sr_light_ray){.from = {.p = point_at(m, u_place)}, .w = sr_neg(wi), .L = sr_infinite_Le(&m->sky, wi, w), .has_passed = true};
+    *ray = (struct sr_light_ray){
+        .from = {.p = point_at(m, u_place)}, .w = sr_neg(wi), .L = sr_infinite_Le(&m->sky, wi, w), .has_passed = true};
     emit_pdf(m, ray->from.n, ray->w, &ray->pdf_area, &ray->pdf_direction);
     return ray->pdf_direction > 0 && !sr_spectrum_is_black(ray->L);
 }
@@ -360,7 +371,19 @@ static bool bounds(const void *self, struct sr_light_bounds *b)
 }
 
 const struct sr_light_model sr_light_portal = {
-    .name = "infinite", .params = sr_infinite_params, .size = sizeof(struct portal), .is_infinite = true, .wants_octahedral_map = true,
-    .prepare = prepare, .sample = sample, .pdf = pdf, .Le = Le, .Le_pdf = Le_pdf, .bounds = bounds, .emit = emit, .emit_pdf = emit_pdf,
-    .emit_weight = emit_weight, .power = power,
+    .name = "infinite",
+    .params = sr_infinite_params,
+    .size = sizeof(struct portal),
+    .is_infinite = true,
+    .wants_octahedral_map = true,
+    .prepare = prepare,
+    .sample = sample,
+    .pdf = pdf,
+    .Le = Le,
+    .Le_pdf = Le_pdf,
+    .bounds = bounds,
+    .emit = emit,
+    .emit_pdf = emit_pdf,
+    .emit_weight = emit_weight,
+    .power = power,
 };

@@ -3,13 +3,13 @@
  *
  *     power  cos(max(0, theta_w - theta_o - theta_b))  cos(max(0, theta_i - theta_b)) / max(d^2, r^2)
  *
- * with d the distance of the child's sphere of radius r, theta_b the half angle under which the sphere is seen, theta_w the
- * angle between the cone's axis and the direction to the receiver, theta_o the cone's half angle, theta_i the angle at the
- * receiver's normal (either side). Where theta_w - theta_o - theta_b is beyond the reach theta_e, no light can come: 0.
- * A. Conty Estevez, C. Kulla, Importance Sampling of Many Lights with Adaptive Tree Splitting, 2018; all eight at a time,
- * with sines and cosines times d, so that one division is left.
- * The probability of a light does not need the walk: it is the product over its ancestors.
- * Limits: the bounds are conservative, so a walk may end at a node none of whose children can contribute. */
+ * with d the distance of the child's sphere of radius r, theta_b the half angle under which the sphere is seen, theta_w
+ * the angle between the cone's axis and the direction to the receiver, theta_o the cone's half angle, theta_i the angle
+ * at the receiver's normal (either side). Where theta_w - theta_o - theta_b is beyond the reach theta_e, no light can
+ * come: 0. A. Conty Estevez, C. Kulla, Importance Sampling of Many Lights with Adaptive Tree Splitting, 2018; all eight
+ * at a time, with sines and cosines times d, so that one division is left. The probability of a light does not need the
+ * walk: it is the product over its ancestors. Limits: the bounds are conservative, so a walk may end at a node none of
+ * whose children can contribute. */
 #include "light/tree.h"
 
 #define WIDTH SR_LIGHT_TREE_WIDTH
@@ -17,7 +17,8 @@
 typedef float v8 __attribute__((vector_size(32)));
 typedef int32_t v8i __attribute__((vector_size(32)));
 
-// what rounding may take from a cosine; and the least weight of a child that may contribute, for the sake of spread normals
+// what rounding may take from a cosine; and the least weight of a child that may contribute, for the sake of spread
+// normals
 static const float slack = 2e-3f, least = 0.02f;
 
 static inline v8 select(v8i mask, v8 a, v8 b)
@@ -47,8 +48,8 @@ static inline v8 magnitude(v8 a)
     return (v8)((v8i)a & 0x7fffffff);
 }
 
-// the members of eight pairs of 16 bits: the first without sign, either with its sign, in units of 1/32767 (the machine is
-// little-endian)
+// the members of eight pairs of 16 bits: the first without sign, either with its sign, in units of 1/32767 (the machine
+// is little-endian)
 static inline v8i pairs(const void *p)
 {
     v8i a;
@@ -96,7 +97,7 @@ SR_INLINE v8 importance(const struct sr_light_tree_node *b, sr_vec3 p, sr_vec3 n
     v8 power = load(b->power), r = load(b->radius);
     v8i is_inside = d2 <= r * r;
     v8 reach2 = larger(larger(d2, r * r), zero + 1e-28f); // [m^2] no length: a lamp in the very origin has neither
-    v8 cos_b = root(larger(d2 - r * r, zero)); // times d, like all that follow
+    v8 cos_b = root(larger(d2 - r * r, zero));            // times d, like all that follow
 
     const float unit = 1 / 32767.0f;
     v8 cos_o = unit * first(cone), cos_e = unit * second(cone);
@@ -131,8 +132,8 @@ static inline v8 running_sum(v8 w)
     return w + __builtin_shufflevector(zero, w, 0, 1, 2, 3, 8, 9, 10, 11);
 }
 
-// Of the weights of the children: the sums up to and with each. Whoever has a weight keeps a share that the rounding of the
-// sums cannot take, so that nobody is left out.
+// Of the weights of the children: the sums up to and with each. Whoever has a weight keeps a share that the rounding of
+// the sums cannot take, so that nobody is left out.
 static inline v8 add_up(v8 w)
 {
     const v8 zero = {0};
@@ -177,7 +178,7 @@ bool sr_light_tree_pick(const struct sr_light_tree *tree, sr_vec3 p, sr_vec3 ns,
         __builtin_memcpy(upto + 1, &sums, sizeof sums);
         if (!(sums[WIDTH - 1] > 0))
             return false;
-        unsigned i = count_reached(sums, t); // counted, since branches would be mispredicted
+        unsigned i = count_reached(sums, t);          // counted, since branches would be mispredicted
         while (SR_UNLIKELY(!(upto[i + 1] > upto[i]))) // rounding led past the last
             --i;
         probability *= share(upto, i);

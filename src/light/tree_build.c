@@ -4,9 +4,9 @@
  *     cost = SUM over both sides  power * spread * extent^2 * (largest extent / extent along the split)
  *
  * is least among 12 bins along each axis (surface area and orientation heuristic of Conty Estevez & Kulla 2018; spread
- * ~ 2 pi (1 - cos_theta_o) + pi (1 - cos_theta_e) stands for their solid angle, extent^2 for their area). Two splits after
- * another make nodes of eight; the bounds that are stored come afterwards, from below, in double and rounded outward.
- * Limits: one thread; about a second for a million lights. */
+ * ~ 2 pi (1 - cos_theta_o) + pi (1 - cos_theta_e) stands for their solid angle, extent^2 for their area). Two splits
+ * after another make nodes of eight; the bounds that are stored come afterwards, from below, in double and rounded
+ * outward. Limits: one thread; about a second for a million lights. */
 #include "light/tree.h"
 
 #define WIDTH SR_LIGHT_TREE_WIDTH
@@ -80,7 +80,8 @@ static inline void join(struct part *a, v4 lo, v4 hi, v4 sum, uint32_t count)
 // two-sided ones count with whichever side is up, so that opposite normals agree
 static inline v4 upward(const struct item *i)
 {
-    bool is_turned = i->is_two_sided && (i->sum[2] < 0 || (i->sum[2] == 0 && (i->sum[1] < 0 || (i->sum[1] == 0 && i->sum[0] < 0))));
+    bool is_turned =
+        i->is_two_sided && (i->sum[2] < 0 || (i->sum[2] == 0 && (i->sum[1] < 0 || (i->sum[1] == 0 && i->sum[0] < 0))));
     return is_turned ? i->sum * (v4){-1, -1, -1, 1} : i->sum;
 }
 
@@ -169,8 +170,8 @@ static uint32_t split(struct build *b, struct range range)
     return i > range.begin && i < range.end ? i : middle;
 }
 
-/* Eight ranges or fewer: the longest is split until none is longer than eight; then short ones are opened while there is
- * room, so that few nodes are almost empty. */
+/* Eight ranges or fewer: the longest is split until none is longer than eight; then short ones are opened while there
+ * is room, so that few nodes are almost empty. */
 static int ranges_of(struct build *b, struct range all, struct range *ranges)
 {
     int n = 1;
@@ -191,7 +192,8 @@ static int ranges_of(struct build *b, struct range all, struct range *ranges)
         int shortest = -1;
         for (int i = 0; i < n; ++i) {
             uint32_t length = ranges[i].end - ranges[i].begin;
-            if (length > 1 && length <= (uint32_t)(WIDTH - n + 1) && (shortest < 0 || length < ranges[shortest].end - ranges[shortest].begin))
+            if (length > 1 && length <= (uint32_t)(WIDTH - n + 1) &&
+                (shortest < 0 || length < ranges[shortest].end - ranges[shortest].begin))
                 shortest = i;
         }
         if (shortest < 0)
@@ -243,12 +245,14 @@ static void store(const struct build *b, struct sr_light_tree_node *node, int sl
     for (int a = 0; a < 3; ++a) {
         node->along[a][slot].centre = (uint16_t)(node->step > 0 ? sr_clamp(at[a] / node->step + 0.5f, 0, 65535) : 0);
         node->along[a][slot].axis = (int16_t)lrintf(child->sum[a] * 32767);
-        double off = (double)node->along[a][slot].centre * (double)node->step - (double)at[a], q = node->along[a][slot].axis;
+        double off = (double)node->along[a][slot].centre * (double)node->step - (double)at[a],
+               q = node->along[a][slot].axis;
         off2 += off * off;
         dot += q * (double)child->sum[a];
         length2 += q * q;
     }
-    node->radius[slot] = (float)((sqrt(off2) + (double)sr_length(vec3(child->hi - child->lo)) / 2) * (1 + 1e-6)) + b->slop;
+    node->radius[slot] =
+        (float)((sqrt(off2) + (double)sr_length(vec3(child->hi - child->lo)) / 2) * (1 + 1e-6)) + b->slop;
     double turned = length2 > 0 ? acos(fmin(dot / sqrt(length2), 1)) : 0;
     double widest = acos((double)sr_clamp(child->lo[3], -1, 1)) + turned;
     node->cone[slot].cos_o = widest < (double)SR_PI ? round_down((float)cos(widest)) : -32767;
@@ -301,8 +305,10 @@ static uint32_t collect(struct build *b, const struct sr_light *lights, uint32_t
         struct sr_light_bounds l;
         if (lights[i].model->is_infinite || !lights[i].model->bounds(lights[i].self, &l) || !(l.power > 0))
             continue;
-        v4 lo = {l.box.lo.x, l.box.lo.y, l.box.lo.z, l.cos_theta_o}, hi = {l.box.hi.x, l.box.hi.y, l.box.hi.z, -l.cos_theta_e};
-        b->items[n++] = (struct item){lo, hi, {l.axis.x, l.axis.y, l.axis.z, l.two_sided ? l.power / 2 : l.power}, i, l.two_sided};
+        v4 lo = {l.box.lo.x, l.box.lo.y, l.box.lo.z, l.cos_theta_o},
+           hi = {l.box.hi.x, l.box.hi.y, l.box.hi.z, -l.cos_theta_e};
+        b->items[n++] =
+            (struct item){lo, hi, {l.axis.x, l.axis.y, l.axis.z, l.two_sided ? l.power / 2 : l.power}, i, l.two_sided};
         for (int a = 0; a < 3; ++a)
             farthest = sr_max(farthest, sr_max(fabsf(lo[a]), fabsf(hi[a])));
     }
@@ -310,8 +316,8 @@ static uint32_t collect(struct build *b, const struct sr_light *lights, uint32_t
     return n;
 }
 
-sr_status sr_light_tree_build(struct sr_arena *arena, const struct sr_light *lights, uint32_t count, struct sr_light_tree *tree,
-                              uint32_t *place, struct sr_error *error)
+sr_status sr_light_tree_build(struct sr_arena *arena, const struct sr_light *lights, uint32_t count,
+                              struct sr_light_tree *tree, uint32_t *place, struct sr_error *error)
 {
     *tree = (struct sr_light_tree){0};
     struct build b = {.place = place, .has_memory = true};

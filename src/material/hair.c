@@ -6,8 +6,9 @@
  *
  *     sigma_a = eumelanin (0.419, 0.697, 1.37) + pheomelanin (0.187, 0.4, 1.05)      [1/radius]
  *
- * becomes a spectrum as any unbounded RGB of sRGB does; eumelanin 1.3, which is brown, where nothing is told. The first that is
- * given counts. d'Eon et al. 2011; Pharr, Jakob & Humphreys 2023, 9.9. The fibre's axis is the tangent dp/du. */
+ * becomes a spectrum as any unbounded RGB of sRGB does; eumelanin 1.3, which is brown, where nothing is told. The first
+ * that is given counts. d'Eon et al. 2011; Pharr, Jakob & Humphreys 2023, 9.9. The fibre's axis is the tangent dp/du.
+ */
 #include "material/private.h"
 
 struct hair {
@@ -20,11 +21,13 @@ struct hair {
 #define OFFSET(member) offsetof(struct hair, member)
 static const struct sr_param params[] = {
     {SR_PARAM_UNBOUNDED_TEXTURE, "sigma_a", "1/radius", 0, INFINITY, NAN, OFFSET(sigma_a.texture), "absorption inside"},
-    {SR_PARAM_ALBEDO_TEXTURE, "reflectance", "1", 0, 1, NAN, OFFSET(reflectance.texture), "colour of a head of such hair, in place of sigma_a"},
+    {SR_PARAM_ALBEDO_TEXTURE, "reflectance", "1", 0, 1, NAN, OFFSET(reflectance.texture),
+     "colour of a head of such hair, in place of sigma_a"},
     {SR_PARAM_ALBEDO_TEXTURE, "color", "1", 0, 1, NAN, OFFSET(color), "the same, where there is no reflectance"},
     {SR_PARAM_FLOAT_TEXTURE, "eumelanin", "1", 0, INFINITY, NAN, OFFSET(eumelanin.texture),
      "concentration of what makes hair brown and black; 0.3 blond, 1.3 brown, 8 black"},
-    {SR_PARAM_FLOAT_TEXTURE, "pheomelanin", "1", 0, INFINITY, NAN, OFFSET(pheomelanin.texture), "concentration of what makes hair yellow and red"},
+    {SR_PARAM_FLOAT_TEXTURE, "pheomelanin", "1", 0, INFINITY, NAN, OFFSET(pheomelanin.texture),
+     "concentration of what makes hair yellow and red"},
     {SR_PARAM_FLOAT_TEXTURE, "eta", "1", 1, INFINITY, 1.55, OFFSET(eta.texture), "index of refraction"},
     {SR_PARAM_FLOAT_TEXTURE, "beta_m", "1", 0, 1, 0.3, OFFSET(beta_m.texture), "roughness along the hair"},
     {SR_PARAM_FLOAT_TEXTURE, "beta_n", "1", 0, 1, 0.3, OFFSET(beta_n.texture), "roughness around the hair"},
@@ -35,7 +38,8 @@ static const struct sr_param params[] = {
 static struct sr_spd melanin(float eumelanin, float pheomelanin)
 {
     float e = sr_max(eumelanin, 0), p = sr_max(pheomelanin, 0);
-    return sr_spd_from_rgb_unbounded(SR_SRGB, (struct sr_rgb){0.419f * e + 0.187f * p, 0.697f * e + 0.4f * p, 1.37f * e + 1.05f * p});
+    return sr_spd_from_rgb_unbounded(
+        SR_SRGB, (struct sr_rgb){0.419f * e + 0.187f * p, 0.697f * e + 0.4f * p, 1.37f * e + 1.05f * p});
 }
 
 static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *error)
@@ -86,7 +90,9 @@ static void bsdf(const void *self, const struct sr_material_context *c, struct s
         b->colour_from = SR_HAIR_FROM_REFLECTANCE;
         b->reflectance = eval_albedo(&m->reflectance, c);
     } else {
-        struct sr_spd s = m->melanin.kind != SR_SPD_NONE ? m->melanin : melanin(eval_float(&m->eumelanin, c), eval_float(&m->pheomelanin, c));
+        struct sr_spd s = m->melanin.kind != SR_SPD_NONE
+                              ? m->melanin
+                              : melanin(eval_float(&m->eumelanin, c), eval_float(&m->pheomelanin, c));
         b->sigma_a = sr_spd_eval(&s, c->w->lambda);
     }
     out->model = &sr_bsdf_hair;

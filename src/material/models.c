@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What scenes may name: the materials of this room's files, then those that follow from the tables of the other BSDFs. */
+/* What scenes may name: the materials of this room's files, then those that follow from the tables of the other BSDFs.
+ */
 #include "material/private.h"
 
 #include <string.h>

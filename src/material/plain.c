@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* The material of any BSDF model, made from its table: each parameter may be a texture.
  *
- * A row of the BSDF's table becomes one of the material's: FLOAT a float texture, ALBEDO and UNBOUNDED spectrum textures,
- * all others stay as they are. What no texture varies is put into a pattern of the model's data once; a hit copies the
- * pattern, asks the textures that are left, and lets the model get ready. */
+ * A row of the BSDF's table becomes one of the material's: FLOAT a float texture, ALBEDO and UNBOUNDED spectrum
+ * textures, all others stay as they are. What no texture varies is put into a pattern of the model's data once; a hit
+ * copies the pattern, asks the textures that are left, and lets the model get ready. */
 #include "material/private.h"
 
 #include <pthread.h>

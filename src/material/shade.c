@@ -13,8 +13,8 @@
  * bytes are read as byte / 255 whatever their decode table says. If a material has both maps the normal map is used, as
  * in pbrt.
  *
- * Normal textures: three numbers are the normal, each from a texture of its own; its second axis is on the side of dp/dv,
- * so that mirrored texture coordinates need no other map (glTF 2.0, 3.9.3).
+ * Normal textures: three numbers are the normal, each from a texture of its own; its second axis is on the side of
+ * dp/dv, so that mirrored texture coordinates need no other map (glTF 2.0, 3.9.3).
  *
  * In all ns' stays on the side of the geometric normal n. */
 #include "material/private.h"
@@ -123,7 +123,8 @@ bool sr_material_has_footprint(const struct sr_material *material)
         return true;
     for (const struct sr_param *p = material->model->params; p && p->name; ++p) {
         struct sr_texture t = {NULL, NULL};
-        if (p->kind == SR_PARAM_FLOAT_TEXTURE || p->kind == SR_PARAM_ALBEDO_TEXTURE || p->kind == SR_PARAM_UNBOUNDED_TEXTURE)
+        if (p->kind == SR_PARAM_FLOAT_TEXTURE || p->kind == SR_PARAM_ALBEDO_TEXTURE ||
+            p->kind == SR_PARAM_UNBOUNDED_TEXTURE)
             memcpy(&t, (const char *)material->self + p->offset, sizeof t);
         float number;
         struct sr_spd spectrum;
@@ -137,7 +138,8 @@ bool sr_material_is_plain(const struct sr_material *material)
 {
     if (!material || !material->model)
         return true;
-    if (!material->model->is_isotropic || material->normal_map.width > 0 || material->normal || sr_material_has_footprint(material))
+    if (!material->model->is_isotropic || material->normal_map.width > 0 || material->normal ||
+        sr_material_has_footprint(material))
         return false;
     for (const struct sr_param *p = material->model->params; p && p->name; ++p) {
         struct sr_texture t = {NULL, NULL};
@@ -156,8 +158,8 @@ static const struct sr_material *chosen(const struct sr_material *material, stru
     return material;
 }
 
-bool sr_material_bssrdf(const struct sr_material *material, struct sr_point *x, sr_vec3 wo, float u, uint32_t seed, struct sr_wavelengths *w,
-                        struct sr_bssrdf *out)
+bool sr_material_bssrdf(const struct sr_material *material, struct sr_point *x, sr_vec3 wo, float u, uint32_t seed,
+                        struct sr_wavelengths *w, struct sr_bssrdf *out)
 {
     struct sr_material_context c = {x, wo, w, u, seed};
     material = chosen(material, &c);

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* Skin, milk, marble: a dielectric boundary, smooth or rough, and light that goes in at one point and comes out at another.
+/* Skin, milk, marble: a dielectric boundary, smooth or rough, and light that goes in at one point and comes out at
+ * another.
  *
- * The medium below is told by name ("Skin1": measured, as medium/ has them, in 1/mm), by sigma_a and sigma_s [1/m], or by what
- * it looks like: reflectance, the share of entering light that comes out, and mfp, the mean free path [m]. Then
+ * The medium below is told by name ("Skin1": measured, as medium/ has them, in 1/mm), by sigma_a and sigma_s [1/m], or
+ * by what it looks like: reflectance, the share of entering light that comes out, and mfp, the mean free path [m]. Then
  *
  *     sigma_t = 1 / mfp,   sigma_s = albedo / mfp,   albedo solved from effective(albedo) = reflectance
  *
- * scale multiplies sigma_a and sigma_s, or mfp. A metre is whatever the scene takes for one; of names it is the millimetre. Where nothing is told it
- * is pbrt's default, close to milk. Pharr, Jakob & Humphreys 2016, 11.4.3; the profile is subsurface/'s. */
+ * scale multiplies sigma_a and sigma_s, or mfp. A metre is whatever the scene takes for one; of names it is the
+ * millimetre. Where nothing is told it is pbrt's default, close to milk. Pharr, Jakob & Humphreys 2016, 11.4.3; the
+ * profile is subsurface/'s. */
 #include "material/private.h"
 #include "medium/medium.h"
 
@@ -29,14 +31,17 @@ static const struct sr_param params[] = {
     {SR_PARAM_UNBOUNDED_TEXTURE, "sigma_s", "1/m", 0, INFINITY, NAN, OFFSET(sigma_s.texture), "scattering"},
     {SR_PARAM_ALBEDO_TEXTURE, "reflectance", "1", 0, 1, NAN, OFFSET(reflectance.texture),
      "share of entering light that comes out, in place of sigma_a and sigma_s"},
-    {SR_PARAM_UNBOUNDED_TEXTURE, "mfp", "m", 0, INFINITY, NAN, OFFSET(mfp.texture), "mean free path, with reflectance; 1"},
+    {SR_PARAM_UNBOUNDED_TEXTURE, "mfp", "m", 0, INFINITY, NAN, OFFSET(mfp.texture),
+     "mean free path, with reflectance; 1"},
     {SR_PARAM_FLOAT, "scale", "1", 0, INFINITY, 1, OFFSET(scale), "factor of sigma_a and sigma_s, or of mfp"},
     {SR_PARAM_FLOAT, "eta", "1", 0.2, 5, 1.33, OFFSET(eta), "index inside over index outside"},
-    {SR_PARAM_FLOAT, "g", "1", -0.999, 0.999, 0, OFFSET(g), "mean cosine of scattering; of named media it is in sigma_s already"},
+    {SR_PARAM_FLOAT, "g", "1", -0.999, 0.999, 0, OFFSET(g),
+     "mean cosine of scattering; of named media it is in sigma_s already"},
     {SR_PARAM_FLOAT_TEXTURE, "roughness", "1", 0, INFINITY, 0, OFFSET(ggx.roughness), "of both directions"},
     {SR_PARAM_FLOAT_TEXTURE, "uroughness", "1", 0, INFINITY, NAN, OFFSET(ggx.u_roughness), "along the tangent"},
     {SR_PARAM_FLOAT_TEXTURE, "vroughness", "1", 0, INFINITY, NAN, OFFSET(ggx.v_roughness), "across the tangent"},
-    {SR_PARAM_BOOL, "remaproughness", "1", 0, 1, 1, OFFSET(remap), "alpha is the root of roughness; else roughness itself"},
+    {SR_PARAM_BOOL, "remaproughness", "1", 0, 1, 1, OFFSET(remap),
+     "alpha is the root of roughness; else roughness itself"},
     {0},
 };
 
@@ -52,14 +57,18 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     struct sr_spd sigma_s = sr_spd_from_rgb_unbounded(SR_SRGB, (struct sr_rgb){2.55f, 3.21f, 3.77f});
     if (is_named(m)) {
         if (!sr_medium_preset(m->name, &sigma_a, &sigma_s))
-            return sr_fail(error, SR_ERROR_INPUT, "there is no medium named \"%s\"; there are \"%s\", \"%s\", \"%s\", …", m->name,
+            return sr_fail(error, SR_ERROR_INPUT,
+                           "there is no medium named \"%s\"; there are \"%s\", \"%s\", \"%s\", …", m->name,
                            sr_medium_preset_name(0), sr_medium_preset_name(1), sr_medium_preset_name(2));
-        if (m->sigma_a.texture.model || m->sigma_s.texture.model || m->reflectance.texture.model || m->mfp.texture.model || m->g != 0)
+        if (m->sigma_a.texture.model || m->sigma_s.texture.model || m->reflectance.texture.model ||
+            m->mfp.texture.model || m->g != 0)
             m->surplus = "the medium is named: sigma_a, sigma_s, reflectance, mfp and g are ignored";
-        m->sigma_a.texture = m->sigma_s.texture = m->reflectance.texture = m->mfp.texture = (struct sr_texture){NULL, NULL};
+        m->sigma_a.texture = m->sigma_s.texture = m->reflectance.texture = m->mfp.texture =
+            (struct sr_texture){NULL, NULL};
         m->g = 0;
     } else if (!m->sigma_a.texture.model != !m->sigma_s.texture.model) {
-        return sr_fail(error, SR_ERROR_INPUT, "%s is given without %s", m->sigma_a.texture.model ? "sigma_a" : "sigma_s",
+        return sr_fail(error, SR_ERROR_INPUT, "%s is given without %s",
+                       m->sigma_a.texture.model ? "sigma_a" : "sigma_s",
                        m->sigma_a.texture.model ? "sigma_s" : "sigma_a");
     } else if (m->sigma_a.texture.model) {
         if (m->reflectance.texture.model || m->mfp.texture.model)

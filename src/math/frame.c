@@ -4,8 +4,9 @@
  *     offset: o = p +- (|n| . p_error) n, each coordinate rounded away from p            [m]
  *     map:    r = 1 - |1 - (|u| + |v|)|, z = +-(1 - r^2), phi = pi/4 (1 + (|v| - |u|) / r), u, v in -1 … 1
  *
- * T. Duff et al., Building an Orthonormal Basis, Revisited, 2017; M. Pharr et al., Physically Based Rendering, 2023, 6.8.6;
- * P. Clarberg, Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD, 2008. Directions must have unit length. */
+ * T. Duff et al., Building an Orthonormal Basis, Revisited, 2017; M. Pharr et al., Physically Based Rendering,
+ * 2023, 6.8.6; P. Clarberg, Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD, 2008. Directions must have unit
+ * length. */
 #include "math/math.h"
 
 struct sr_frame sr_frame_from_zx(sr_vec3 z, sr_vec3 x)

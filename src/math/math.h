@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Vectors, frames, transforms, boxes, quadrature and statistics.
  *
- * Geometry has verbs (sr_dot, sr_add), light has operators (sr_spectrum): a radiance can never be added to a direction. */
+ * Geometry has verbs (sr_dot, sr_add), light has operators (sr_spectrum): a radiance can never be added to a direction.
+ */
 #ifndef SR_MATH_MATH_H
 #define SR_MATH_MATH_H
 
@@ -171,10 +172,10 @@ static inline sr_vec3 sr_to_world(const struct sr_frame *f, sr_vec3 w)
 /* ---- rays ---- */
 
 struct sr_ray {
-    sr_vec3 o;   // origin [m]
-    sr_vec3 d;   // direction, unit length unless said otherwise
-    float time;  // [1] share of the shutter interval
-    float t_max; // [m]
+    sr_vec3 o;       // origin [m]
+    sr_vec3 d;       // direction, unit length unless said otherwise
+    float time;      // [1] share of the shutter interval
+    float t_max;     // [m]
     bool is_outward; // it leaves a closed mesh, and goes away from what that encloses
 };
 
@@ -196,9 +197,9 @@ struct sr_transform sr_transform_invert(const struct sr_transform *t);
 bool sr_transform_is_valid(const struct sr_transform *t); // finite, and its linear part invertible
 bool sr_transform_is_identity(const struct sr_transform *t);
 bool sr_transform_swaps_handedness(const struct sr_transform *t);
-sr_vec3 sr_transform_point(const struct sr_transform *t, sr_vec3 p);   // with division by w
+sr_vec3 sr_transform_point(const struct sr_transform *t, sr_vec3 p); // with division by w
 sr_vec3 sr_transform_vector(const struct sr_transform *t, sr_vec3 v);
-sr_vec3 sr_transform_normal(const struct sr_transform *t, sr_vec3 n);  // by the inverse transpose; not normalised
+sr_vec3 sr_transform_normal(const struct sr_transform *t, sr_vec3 n); // by the inverse transpose; not normalised
 sr_vec3 sr_inverse_point(const struct sr_transform *t, sr_vec3 p);
 sr_vec3 sr_inverse_vector(const struct sr_transform *t, sr_vec3 v);
 /* The point and a bound of its absolute error, given the error of p (may be zero). */
@@ -228,27 +229,29 @@ struct sr_motion {
     double T[3], T_change[3], S[3][3], S_change[3][3], R[3][3], R_sine[3][3], R_versine[3][3], angle; // motion.c
 };
 /* false: there is no way between them, as one of them mirrors, or is no affine map. finish <= begin: it jumps. */
-bool sr_motion_make(const struct sr_transform *start, const struct sr_transform *end, float begin, float finish, struct sr_motion *out);
-void sr_motion_at(const struct sr_motion *m, float time, struct sr_transform *out); // time: share of the shutter interval
+bool sr_motion_make(const struct sr_transform *start, const struct sr_transform *end, float begin, float finish,
+                    struct sr_motion *out);
+void sr_motion_at(const struct sr_motion *m, float time,
+                  struct sr_transform *out); // time: share of the shutter interval
 /* Holds all that moves in a box from time0 to time1. */
 struct sr_box sr_motion_box(const struct sr_motion *m, struct sr_box box, float time0, float time1);
 
 /* ---- a point of a surface, as geometry ---- */
 
 struct sr_point {
-    sr_vec3 p;            // [m]
-    sr_vec3 p_error;      // [m] bound of the rounding error of p, per axis
-    sr_vec3 n;            // [1] geometric normal: the side that counts as outside
-    sr_vec3 ns;           // [1] shading normal, on the side of n
-    sr_vec3 dpdu, dpdv;   // [m] derivatives of p by the texture coordinates
-    sr_vec3 dpdus;        // [m] shading tangent: gives the frame's x axis
-    sr_vec3 dndu, dndv;   // [1] derivatives of the shading normal
-    sr_vec2 uv;           // [1] texture coordinates
-    sr_vec3 dpdx, dpdy;   // [m] footprint: change of p from one pixel (or sample spacing) to the next
+    sr_vec3 p;                    // [m]
+    sr_vec3 p_error;              // [m] bound of the rounding error of p, per axis
+    sr_vec3 n;                    // [1] geometric normal: the side that counts as outside
+    sr_vec3 ns;                   // [1] shading normal, on the side of n
+    sr_vec3 dpdu, dpdv;           // [m] derivatives of p by the texture coordinates
+    sr_vec3 dpdus;                // [m] shading tangent: gives the frame's x axis
+    sr_vec3 dndu, dndv;           // [1] derivatives of the shading normal
+    sr_vec2 uv;                   // [1] texture coordinates
+    sr_vec3 dpdx, dpdy;           // [m] footprint: change of p from one pixel (or sample spacing) to the next
     float dudx, dudy, dvdx, dvdy; // [1] footprint in texture coordinates
-    float time;           // [1] share of the shutter interval
-    int32_t face;         // face index that the mesh gives, or 0
-    int8_t outward;       // of a closed mesh: 1: n points away from what it encloses; -1: toward it; 0: of nothing such
+    float time;                   // [1] share of the shutter interval
+    int32_t face;                 // face index that the mesh gives, or 0
+    int8_t outward; // of a closed mesh: 1: n points away from what it encloses; -1: toward it; 0: of nothing such
 };
 /* Whether w leads out of the closed mesh that x lies on. */
 SR_INLINE bool sr_is_outward(const struct sr_point *x, sr_vec3 w)
@@ -272,7 +275,8 @@ SR_INLINE sr_vec3 sr_point_offset(const struct sr_point *x, sr_vec3 w)
 
 /* ---- angles ---- */
 
-/* Sine and cosine of x in -pi/4 … pi/4 [rad], by Taylor's series: off by less than 1e-7, the sine relative to itself. */
+/* Sine and cosine of x in -pi/4 … pi/4 [rad], by Taylor's series: off by less than 1e-7, the sine relative to itself.
+ */
 SR_INLINE void sr_sin_cos_eighth(float x, float *s, float *c)
 {
     float x2 = x * x;
@@ -290,12 +294,14 @@ SR_INLINE void sr_sin_cos_turn(float turn, float *s, float *c)
     *c = (quarter + 1) & 2 ? -a : a;
     *s = quarter & 2 ? -b : b;
 }
-/* The arc tangent of x in 0 … 1 [rad], by a polynomial through the arc's Chebyshev points: off by less than 2e-7 of itself. */
+/* The arc tangent of x in 0 … 1 [rad], by a polynomial through the arc's Chebyshev points: off by less than 2e-7 of
+ * itself. */
 SR_INLINE float sr_atan_eighth(float x)
 {
     float t = x * x, t2 = t * t, t4 = t2 * t2;
-    return x * ((1 - 0.33333036f * t) + t2 * (0.19991872f - 0.14197798f * t) + t4 * ((0.10618371f - 0.07456855f * t) + t2 * (0.042137623f - 0.015731249f * t)) +
-                t4 * t4 * 0.0027662835f);
+    return x *
+           ((1 - 0.33333036f * t) + t2 * (0.19991872f - 0.14197798f * t) +
+            t4 * ((0.10618371f - 0.07456855f * t) + t2 * (0.042137623f - 0.015731249f * t)) + t4 * t4 * 0.0027662835f);
 }
 
 /* The angle of (x, y) from the x axis in 0 … 2 pi [rad], off by less than 1e-6; 0 for (0, 0). */
@@ -323,8 +329,8 @@ sr_vec2 sr_equal_area_sphere_to_square(sr_vec3 d);
 
 /* Perlin's gradient noise of 2002, pbrt's: about -1 … 1, 0 at all whole numbers, repeats after 256. */
 float sr_noise(sr_vec3 p);
-/* The sum of octaves of noise, each of 1.99 times the frequency and omega times the height of the one before; dpdx, dpdy:
- * the footprint, below which no octave is drawn (zero: all are). turbulence adds the octaves' absolute values. */
+/* The sum of octaves of noise, each of 1.99 times the frequency and omega times the height of the one before; dpdx,
+ * dpdy: the footprint, below which no octave is drawn (zero: all are). turbulence adds the octaves' absolute values. */
 float sr_fbm(sr_vec3 p, sr_vec3 dpdx, sr_vec3 dpdy, float omega, int octaves);
 float sr_turbulence(sr_vec3 p, sr_vec3 dpdx, sr_vec3 dpdy, float omega, int octaves);
 
@@ -353,8 +359,9 @@ double sr_chi2_p(double chi2, double degrees);        // probability of a larger
 double sr_incomplete_gamma_upper(double a, double x); // Q(a, x), regularised
 double sr_incomplete_beta(double a, double b, double x);
 
-/* Pearson's test of counts against expectations; cells expecting fewer than min_expected are pooled. Returns the p-value;
- * 0 when something was drawn where nothing was expected. */
-double sr_chi2_test(const double *observed, const double *expected, size_t cells, double min_expected, double *chi2, int *degrees);
+/* Pearson's test of counts against expectations; cells expecting fewer than min_expected are pooled. Returns the
+ * p-value; 0 when something was drawn where nothing was expected. */
+double sr_chi2_test(const double *observed, const double *expected, size_t cells, double min_expected, double *chi2,
+                    int *degrees);
 
 #endif

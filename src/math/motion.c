@@ -4,10 +4,11 @@
  *     M = T R S,      M(x) = T(x) R(x) S(x),      T(x) = (1 - x) T0 + x T1,    S(x) = (1 - x) S0 + x S1,
  *     R(x) = (1 + sin(x theta) K + (1 - cos(x theta)) K^2) R0,       x = (time - begin) / (finish - begin), in 0 … 1
  *
- * R is the rotation nearest to M's linear part and S = R^T M the symmetric rest (polar decomposition: N. Higham, 1986); where
- * M mirrors, S does, all of it. K is the cross product with the axis of R1 R0^T, the shorter way round, as slerp has it
- * (K. Shoemake, Animating rotation with quaternion curves, 1985); the decomposition is that of Shoemake & Duff, 1992.
- * Limits: both ends mirror or neither does; turns of more than half a circle cannot be told from what is left of them. */
+ * R is the rotation nearest to M's linear part and S = R^T M the symmetric rest (polar decomposition: N. Higham, 1986);
+ * where M mirrors, S does, all of it. K is the cross product with the axis of R1 R0^T, the shorter way round, as slerp
+ * has it (K. Shoemake, Animating rotation with quaternion curves, 1985); the decomposition is that of Shoemake & Duff,
+ * 1992. Limits: both ends mirror or neither does; turns of more than half a circle cannot be told from what is left of
+ * them. */
 #include "math/math.h"
 
 #include <string.h>
@@ -99,7 +100,8 @@ static bool is_affine(const struct sr_transform *t)
     return t->m[3][0] == 0 && t->m[3][1] == 0 && t->m[3][2] == 0 && t->m[3][3] == 1;
 }
 
-bool sr_motion_make(const struct sr_transform *start, const struct sr_transform *end, float begin, float finish, struct sr_motion *out)
+bool sr_motion_make(const struct sr_transform *start, const struct sr_transform *end, float begin, float finish,
+                    struct sr_motion *out)
 {
     *out = (struct sr_motion){.start = *start, .end = *end, .begin = begin, .finish = finish};
     out->moves = memcmp(start->m, end->m, sizeof start->m) != 0;
@@ -193,7 +195,8 @@ struct sr_box sr_motion_box(const struct sr_motion *m, struct sr_box box, float 
     stretch(m, x1, S1);
     struct sr_box all = sr_box_empty();
     for (int corner = 0; corner < 8; ++corner) {
-        double c[3] = {(double)(corner & 1 ? box.hi.x : box.lo.x), (double)(corner & 2 ? box.hi.y : box.lo.y), (double)(corner & 4 ? box.hi.z : box.lo.z)};
+        double c[3] = {(double)(corner & 1 ? box.hi.x : box.lo.x), (double)(corner & 2 ? box.hi.y : box.lo.y),
+                       (double)(corner & 4 ? box.hi.z : box.lo.z)};
         double size = fmax(length_of_product((const double(*)[3])S0, c), length_of_product((const double(*)[3])S1, c));
         bend = fmax(bend, m->angle * (m->angle * size + 2 * length_of_product((const double(*)[3])m->S_change, c)));
         for (int step = 0; step <= steps; ++step) {
@@ -209,7 +212,8 @@ struct sr_box sr_motion_box(const struct sr_motion *m, struct sr_box box, float 
     }
     // and the roundings of whoever moves a point by sr_motion_at
     sr_vec3 lo = all.lo, hi = all.hi;
-    float largest = sr_max(sr_max_component((sr_vec3){fabsf(lo.x), fabsf(lo.y), fabsf(lo.z)}), sr_max_component((sr_vec3){fabsf(hi.x), fabsf(hi.y), fabsf(hi.z)}));
+    float largest = sr_max(sr_max_component((sr_vec3){fabsf(lo.x), fabsf(lo.y), fabsf(lo.z)}),
+                           sr_max_component((sr_vec3){fabsf(hi.x), fabsf(hi.y), fabsf(hi.z)}));
     float pad = (float)(bend * h * h / 8) * (1 + 1e-5f) + 16 * SR_MACHINE_EPSILON * largest;
     sr_vec3 by = {pad, pad, pad};
     return (struct sr_box){sr_sub(lo, by), sr_add(hi, by)};

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Gradient noise, and sums of its octaves.
  *
- *     noise(p)      = the gradients of the 8 corners of p's cell, each times the way from its corner, mixed by 6 t^5 - 15 t^4 + 10 t^3
- *     fbm(p)        = sum_i w^i  noise(1.99^i p)
- *     turbulence(p) = sum_i w^i |noise(1.99^i p)|
+ *     noise(p)      = the gradients of the 8 corners of p's cell, each times the way from its corner, mixed by 6 t^5 -
+ * 15 t^4 + 10 t^3 fbm(p)        = sum_i w^i  noise(1.99^i p) turbulence(p) = sum_i w^i |noise(1.99^i p)|
  *
  * Perlin, "Improving noise", 2002, with its permutation. Octaves finer than the footprint are left out; the last one
  * fades, as in PBRT4 10.6, whose numbers these are: a scene's marble has its veins where pbrt-v4 draws them. */
@@ -30,8 +29,8 @@ static inline uint8_t next(int x)
     return permutation[x & 255];
 }
 
-/* One of Perlin's 12 gradients (4 of them twice), the middles of a cube's edges, times (x, y, z). From a table: which it is
- * cannot be foretold, and a wrong branch costs more than the sum. */
+/* One of Perlin's 12 gradients (4 of them twice), the middles of a cube's edges, times (x, y, z). From a table: which
+ * it is cannot be foretold, and a wrong branch costs more than the sum. */
 static inline float along_gradient(uint8_t hash, float x, float y, float z)
 {
     static const float gradients[16][4] = {

@@ -80,7 +80,8 @@ static double beta_factor(double a, double b, double x, double y)
     if (large < 20)
         rise = log_gamma(a + b) - log_gamma(large);
     else
-        rise = (large - 0.5) * log1p(small / large) + small * log(a + b) - small + stirling_rest(a + b) - stirling_rest(large);
+        rise = (large - 0.5) * log1p(small / large) + small * log(a + b) - small + stirling_rest(a + b) -
+               stirling_rest(large);
     return exp(a * log_x + b * log_y + rise - log_gamma(small));
 }
 
@@ -171,7 +172,8 @@ double sr_student_quantile(double p, double degrees)
     while (sr_student_p_two_sided(hi, degrees) > tail && hi < 1e300)
         hi *= 2;
     // Newton's method, kept inside the bracket; the derivative is twice the density
-    double log_factor = log(2 * beta_factor(0.5 * degrees, 0.5, 0.5, 0.5)) + 0.5 * (degrees + 1) * M_LN2 - 0.5 * log(degrees);
+    double log_factor =
+        log(2 * beta_factor(0.5 * degrees, 0.5, 0.5, 0.5)) + 0.5 * (degrees + 1) * M_LN2 - 0.5 * log(degrees);
     double t = 0.5 * (lo + hi);
     for (int i = 0; i < 200; ++i) {
         double excess = sr_student_p_two_sided(t, degrees) - tail;

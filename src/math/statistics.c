@@ -41,7 +41,8 @@ double sr_tally_standard_error(const struct sr_tally *t)
     return t->n > 1 ? sqrt(sr_tally_variance(t) / (double)t->n) : 0;
 }
 
-double sr_chi2_test(const double *observed, const double *expected, size_t cells, double min_expected, double *chi2, int *degrees)
+double sr_chi2_test(const double *observed, const double *expected, size_t cells, double min_expected, double *chi2,
+                    int *degrees)
 {
     double sum = 0, last_o = 0, last_e = 0, pool_o = 0, pool_e = 0;
     int bins = 0;

@@ -3,9 +3,10 @@
  *
  *     f = A / (B + |s_i + s_o|^g)       [1/sr],    s = (x, y) of a direction: zero toward the mirror direction
  *
- * The file begins with the word ABg; then "BTDF" if light passes through (about the straight way on), and lines of A B g or
- * of lambda A B g, or A = …, B = …, g = …; # begins a comment. The specular light that is not scattered is not part of it. The
- * form of stray-light programs; only r enters, so that it is reciprocal and invariant under shifts in s (Harvey 1976). */
+ * The file begins with the word ABg; then "BTDF" if light passes through (about the straight way on), and lines of A B
+ * g or of lambda A B g, or A = …, B = …, g = …; # begins a comment. The specular light that is not scattered is not
+ * part of it. The form of stray-light programs; only r enters, so that it is reciprocal and invariant under shifts in s
+ * (Harvey 1976). */
 #include "measured/private.h"
 
 struct abg_row {

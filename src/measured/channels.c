@@ -75,8 +75,8 @@ sr_spectrum channels_eval(const struct channels *c, const float *values, const s
     return f;
 }
 
-/* rgb = M xyz, xyz = SUM of S(lambda) (x, y, z)bar f(lambda) over that of f = 1; each row is made to sum to 1 exactly, so
- * that white is (1, 1, 1). */
+/* rgb = M xyz, xyz = SUM of S(lambda) (x, y, z)bar f(lambda) over that of f = 1; each row is made to sum to 1 exactly,
+ * so that white is (1, 1, 1). */
 struct rgb_weights rgb_weights_make(void)
 {
     const struct sr_colour_space *space = sr_colour_space(SR_SRGB);

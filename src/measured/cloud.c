@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* Measurements that fill no grid: a smooth mean of the eight nearest ones.
  *
- *     log(f + e) = SUM w_k log(f_k + e) / SUM w_k,    w_k = ((R - d_k) / (R d_k))^2,    R = distance of the ninth,  e = 0.001 / sr
+ *     log(f + e) = SUM w_k log(f_k + e) / SUM w_k,    w_k = ((R - d_k) / (R d_k))^2,    R = distance of the ninth,  e =
+ * 0.001 / sr
  *
  * in logarithms, so that a peak that one measurement has hit does not spread to its neighbours
- * (D. Shepard 1968; weights of R. Franke & G. Nielson 1980: continuous, exact at the measurements). Distances of isotropic
- * data are taken between the invariants
+ * (D. Shepard 1968; weights of R. Franke & G. Nielson 1980: continuous, exact at the measurements). Distances of
+ * isotropic data are taken between the invariants
  *     (|s_i + s_o|, |s_i - s_o|, ||s_i| - |s_o||),    s = (x, y) of a direction,
- * which do not change when wi and wo are exchanged, turned or mirrored: f is reciprocal by construction, and the first of
- * them is the distance from the mirror direction. Others: between (s_i, s_o). Found in a k-d tree. */
+ * which do not change when wi and wo are exchanged, turned or mirrored: f is reciprocal by construction, and the first
+ * of them is the distance from the mirror direction. Others: between (s_i, s_o). Found in a k-d tree. */
 #include "measured/private.h"
 
 #include <stdlib.h>

@@ -3,8 +3,8 @@
  *
  *     f = SUM over 16 corners of w_i(theta_i) w_j(phi_i) w_k(theta_o) w_l(phi_o) f_ijkl
  *
- * Azimuths that go round are periodic; isotropic ones that cover half a turn count for both halves; outside of the measured
- * angles the nearest ones count. Reflection and transmission are never mixed. */
+ * Azimuths that go round are periodic; isotropic ones that cover half a turn count for both halves; outside of the
+ * measured angles the nearest ones count. Reflection and transmission are never mixed. */
 #include "measured/private.h"
 
 #include <stdlib.h>

@@ -3,11 +3,12 @@
  *
  *     p(wi) = SUM over slices s of w_s [ 0.9 P_s(cell of m) / (Omega_cell 4 |wo.m|) + 0.1 |cos_theta_i| / (pi sides) ]
  *
- * in sr^-1, with m = (wo + wi) / |wo + wi|; where light passes through, wi is mirrored in the surface first, so that light
- * that goes straight on has m = n. The weights w_s interpolate between the slices next to wo, and add up to 1: drawing one
- * slice by w_s draws by p exactly. A cell's probability P_s is the share of f |cos_theta_i|, mean over wavelengths, that falls
- * into it; inside a cell m is uniform in solid angle. Cells are even in u = sqrt(2 theta_m / pi) and in phi_m - phi_o (data
- * that know an x axis: phi_m), like those of MERL. The cosine keeps p > 0 wherever f > 0. */
+ * in sr^-1, with m = (wo + wi) / |wo + wi|; where light passes through, wi is mirrored in the surface first, so that
+ * light that goes straight on has m = n. The weights w_s interpolate between the slices next to wo, and add up to 1:
+ * drawing one slice by w_s draws by p exactly. A cell's probability P_s is the share of f |cos_theta_i|, mean over
+ * wavelengths, that falls into it; inside a cell m is uniform in solid angle. Cells are even in u = sqrt(2 theta_m /
+ * pi) and in phi_m - phi_o (data that know an x axis: phi_m), like those of MERL. The cosine keeps p > 0 wherever f >
+ * 0. */
 #include "measured/private.h"
 
 #define COSINE_SHARE 0.1f

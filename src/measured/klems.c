@@ -3,11 +3,12 @@
  *
  *     f = B[patch of light leaving][patch of light arriving]      [1/sr], constant over both patches
  *
- * A basis divides the polar angle into rings and each ring into n patches, the first of them centred at phi = 0; a patch's
- * projected solid angle is pi (cos^2 theta_1 - cos^2 theta_2) / n. The patch of arriving light is that of the opposite azimuth, so
- * that the diagonal holds the mirror direction and the straight way through. J. H. Klems 1994; conventions of LBNL's WINDOW and
- * of Radiance (G. Ward). WINDOW's front is our side of +z. Directions are drawn exactly: a patch by B Omega_p, inside of it by the
- * cosine, so that p(wi) = f |cos_theta_i| / SUM of B Omega_p. Narrow peaks are spread over their patch, 10 deg or so wide. */
+ * A basis divides the polar angle into rings and each ring into n patches, the first of them centred at phi = 0; a
+ * patch's projected solid angle is pi (cos^2 theta_1 - cos^2 theta_2) / n. The patch of arriving light is that of the
+ * opposite azimuth, so that the diagonal holds the mirror direction and the straight way through. J. H. Klems 1994;
+ * conventions of LBNL's WINDOW and of Radiance (G. Ward). WINDOW's front is our side of +z. Directions are drawn
+ * exactly: a patch by B Omega_p, inside of it by the cosine, so that p(wi) = f |cos_theta_i| / SUM of B Omega_p. Narrow
+ * peaks are spread over their patch, 10 deg or so wide. */
 #include "measured/private.h"
 
 struct matrix {

@@ -2,8 +2,8 @@
 /* Scattering as somebody measured it: files of BSDF data, read, judged, evaluated, sampled and written. (Luminaires:
  * photometry.h.)
  *
- * Directions are those of the room bsdf/: local, normal +z, wo toward the viewer, wi toward the light, both pointing away
- * from the surface. f is in sr^-1, without the cosine, whatever the file keeps. */
+ * Directions are those of the room bsdf/: local, normal +z, wo toward the viewer, wi toward the light, both pointing
+ * away from the surface. f is in sr^-1, without the cosine, whatever the file keeps. */
 #ifndef SR_MEASURED_MEASURED_H
 #define SR_MEASURED_MEASURED_H
 
@@ -41,7 +41,8 @@ struct sr_measured_options { // all zero: as the file says
 struct sr_measured;
 
 /* The format is told by the content, never by the file's ending. Everything is kept in the arena: less than a small
- * multiple of the file's size, and at most 16 MB for drawing directions. What is wrong is told as file, place, expectation. */
+ * multiple of the file's size, and at most 16 MB for drawing directions. What is wrong is told as file, place,
+ * expectation. */
 sr_status sr_measured_read(const char *path, const struct sr_measured_options *options, struct sr_arena *arena,
                            const struct sr_measured **out, struct sr_error *error);
 /* The same from bytes in memory; name is for messages. The bytes may go when it returns. */
@@ -58,8 +59,8 @@ sr_spectrum sr_measured_f(const struct sr_measured *m, sr_vec3 wo, sr_vec3 wi, s
 float sr_measured_pdf(const struct sr_measured *m, sr_vec3 wo, sr_vec3 wi);
 /* False: the draw is lost below the horizon; pdf then integrates to less than 1 by that share. */
 bool sr_measured_sample(const struct sr_measured *m, sr_vec3 wo, float u_lobe, sr_vec2 u, sr_vec3 *wi, float *pdf);
-/* Share of the light that arrives from wi which leaves on wi's side (SR_MEASURED_REFLECTION) or on the other, by quadrature
- * with n^2 nodes; exact where the data are constant over patches. */
+/* Share of the light that arrives from wi which leaves on wi's side (SR_MEASURED_REFLECTION) or on the other, by
+ * quadrature with n^2 nodes; exact where the data are constant over patches. */
 sr_spectrum sr_measured_albedo(const struct sr_measured *m, sr_vec3 wi, uint32_t side, sr_spectrum lambda, int n);
 
 /* ---- what the data are worth ---- */

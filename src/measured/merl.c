@@ -6,9 +6,10 @@
  *     f [1/sr] = (1, 1.15, 1.66) / 1500 times the number
  *
  * W. Matusik, H. Pfister, M. Brand & L. McMillan 2003; angles of S. Rusinkiewicz 1998; phi_d + pi is the same by
- * reciprocity. Between the cells' centres f is linear. Negative numbers mark what was not measured or lies below the horizon:
- * they take no part, are counted, and are 0 only where all neighbours are. Near grazing (above some 80 deg) the published
- * data are extrapolated, and some metals reflect more than they receive: that is reported, and left as it is. */
+ * reciprocity. Between the cells' centres f is linear. Negative numbers mark what was not measured or lies below the
+ * horizon: they take no part, are counted, and are 0 only where all neighbours are. Near grazing (above some 80 deg)
+ * the published data are extrapolated, and some metals reflect more than they receive: that is reported, and left as it
+ * is. */
 #include "measured/private.h"
 
 static const double scale[3] = {1.0 / 1500, 1.15 / 1500, 1.66 / 1500};

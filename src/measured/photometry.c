@@ -4,8 +4,8 @@
  *     I(C, gamma) = bilinear in C and gamma between the neighbours, C folded by the symmetry          [cd]
  *     INTEGRAL_a^b (p + q gamma) sin gamma dgamma = [-(p + q gamma) cos gamma + q sin gamma]_a^b      [cd]
  *
- * The second is exact for the first: fluxes have no error of quadrature. Beam and field angles: CIE 121 and IES LM-79, at
- * 50 % and 10 % of the plane's peak. */
+ * The second is exact for the first: fluxes have no error of quadrature. Beam and field angles: CIE 121 and IES LM-79,
+ * at 50 % and 10 % of the plane's peak. */
 #include "measured/photometry_private.h"
 
 #include <stdio.h>
@@ -115,8 +115,12 @@ static double plane_weight(const struct sr_photometry *p, uint32_t k)
     static const double copies[] = {1, 1, 2, 2, 4};
     uint32_t last = p->c_count - 1;
     bool turns = p->symmetry == SR_PHOTOMETRY_ALL_PLANES;
-    double before = k > 0 ? (double)p->c[k] - (double)p->c[k - 1] : turns ? (double)p->c[0] + 360 - (double)p->c[last] : 0;
-    double after = k < last ? (double)p->c[k + 1] - (double)p->c[k] : turns ? (double)p->c[0] + 360 - (double)p->c[last] : 0;
+    double before = k > 0   ? (double)p->c[k] - (double)p->c[k - 1]
+                    : turns ? (double)p->c[0] + 360 - (double)p->c[last]
+                            : 0;
+    double after = k < last ? (double)p->c[k + 1] - (double)p->c[k]
+                   : turns  ? (double)p->c[0] + 360 - (double)p->c[last]
+                            : 0;
     return copies[p->symmetry] * (before + after) / 2 * DEGREE;
 }
 
@@ -130,7 +134,8 @@ double sr_photometry_flux(const struct sr_photometry *p, double from, double to)
 
 /* ---- report ---- */
 
-/* The full angle [deg] around the peak of the planes C and C + 180 where the intensity stays above the share of that peak. */
+/* The full angle [deg] around the peak of the planes C and C + 180 where the intensity stays above the share of that
+ * peak. */
 static double width_at(const struct sr_photometry *p, double c, double share)
 {
     enum { STEPS = 3600 }; // 0.1 deg from -180 to 180
@@ -164,7 +169,8 @@ static double width_at(const struct sr_photometry *p, double c, double share)
 
 void sr_photometry_report(const struct sr_photometry *p, struct sr_photometry_report *r)
 {
-    *r = (struct sr_photometry_report){.flux = sr_photometry_flux(p, 0, 180), .flux_down = sr_photometry_flux(p, 0, 90)};
+    *r =
+        (struct sr_photometry_report){.flux = sr_photometry_flux(p, 0, 180), .flux_down = sr_photometry_flux(p, 0, 90)};
     for (size_t i = 0; i < (size_t)p->c_count * p->gamma_count; ++i)
         if ((double)p->candela[i] > r->peak) {
             r->peak = (double)p->candela[i];
@@ -202,7 +208,8 @@ void photometry_note(struct photometry_draft *d, const char *format, ...)
     va_end(arguments);
 }
 
-bool photometry_add_word(const struct source *s, struct photometry_draft *d, const char *key, const char *begin, const char *end)
+bool photometry_add_word(const struct source *s, struct photometry_draft *d, const char *key, const char *begin,
+                         const char *end)
 {
     while (begin < end && (unsigned char)*begin <= ' ')
         ++begin;
@@ -225,26 +232,33 @@ sr_status photometry_check(const struct sr_photometry *p, const char *name, stru
 {
     static const float first[] = {0, 0, 0, 90, 0}, last[] = {360, 0, 180, 270, 90};
     if (p->c_count == 0 || p->gamma_count < 2 || (p->symmetry == SR_PHOTOMETRY_AXIAL) != (p->c_count == 1))
-        return sr_fail(error, SR_ERROR_INPUT, "%s: %u C-planes of %u angles do not make a distribution", name, p->c_count, p->gamma_count);
+        return sr_fail(error, SR_ERROR_INPUT, "%s: %u C-planes of %u angles do not make a distribution", name,
+                       p->c_count, p->gamma_count);
     for (int axis = 0; axis < 2; ++axis) {
         const float *a = axis ? p->gamma : p->c;
         for (uint32_t i = 0; i < (axis ? p->gamma_count : p->c_count); ++i)
             if (!(a[i] >= 0 && a[i] <= (axis ? 180 : 360)) || (i > 0 && !(a[i] - a[i - 1] > 1e-3f)))
-                return sr_fail(error, SR_ERROR_INPUT, "%s: %s %u is %g deg: increasing angles from 0 to %d are expected", name,
+                return sr_fail(error, SR_ERROR_INPUT,
+                               "%s: %s %u is %g deg: increasing angles from 0 to %d are expected", name,
                                axis ? "vertical angle" : "C-plane", i + 1, (double)a[i], axis ? 180 : 360);
     }
     float end = p->c[p->c_count - 1];
-    if (p->symmetry == SR_PHOTOMETRY_ALL_PLANES ? end >= last[0] : fabsf(p->c[0] - first[p->symmetry]) > 0.01f || fabsf(end - last[p->symmetry]) > 0.01f)
-        return sr_fail(error, SR_ERROR_INPUT, "%s: C-planes from %g to %g deg do not suit the symmetry: %g to %g are expected", name,
+    if (p->symmetry == SR_PHOTOMETRY_ALL_PLANES
+            ? end >= last[0]
+            : fabsf(p->c[0] - first[p->symmetry]) > 0.01f || fabsf(end - last[p->symmetry]) > 0.01f)
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "%s: C-planes from %g to %g deg do not suit the symmetry: %g to %g are expected", name,
                        (double)p->c[0], (double)end, (double)first[p->symmetry], (double)last[p->symmetry]);
     for (size_t i = 0; i < (size_t)p->c_count * p->gamma_count; ++i)
         if (!(p->candela[i] >= 0 && p->candela[i] < 1e12f))
-            return sr_fail(error, SR_ERROR_INPUT, "%s: the intensity at C %g deg, gamma %g deg is %g cd: 0 to 1e12 are expected", name,
-                           (double)p->c[i / p->gamma_count], (double)p->gamma[i % p->gamma_count], (double)p->candela[i]);
+            return sr_fail(
+                error, SR_ERROR_INPUT, "%s: the intensity at C %g deg, gamma %g deg is %g cd: 0 to 1e12 are expected",
+                name, (double)p->c[i / p->gamma_count], (double)p->gamma[i % p->gamma_count], (double)p->candela[i]);
     return SR_OK;
 }
 
-/* A line of the first ones that begins with TILT= ends an IES file's words; EULUMDAT's second and third are small numbers. */
+/* A line of the first ones that begins with TILT= ends an IES file's words; EULUMDAT's second and third are small
+ * numbers. */
 static int format_of(const char *data, size_t size)
 {
     struct scan scan = scan_start(data, size);
@@ -270,8 +284,8 @@ bool sr_photometry_is(const void *data, size_t size)
     return format_of(data, size) >= 0;
 }
 
-sr_status sr_photometry_parse(const char *name, const void *data, size_t size, struct sr_arena *arena, const struct sr_photometry **out,
-                              struct sr_error *error)
+sr_status sr_photometry_parse(const char *name, const void *data, size_t size, struct sr_arena *arena,
+                              const struct sr_photometry **out, struct sr_error *error)
 {
     *out = NULL;
     struct source s = {.name = name, .data = data, .size = size, .arena = arena, .error = error};
@@ -279,9 +293,13 @@ sr_status sr_photometry_parse(const char *name, const void *data, size_t size, s
     if (!d)
         return sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", name);
     int format = format_of(data, size);
-    sr_status status = format == SR_PHOTOMETRY_IES   ? read_ies(&s, d)
-                       : format == SR_PHOTOMETRY_LDT ? read_ldt(&s, d)
-                                                     : fail_at(&s, 1, "is neither an IES LM-63 file (no line TILT=) nor a EULUMDAT file (lines 2 and 3 are no single digits)");
+    sr_status status =
+        format == SR_PHOTOMETRY_IES ? read_ies(&s, d)
+        : format == SR_PHOTOMETRY_LDT
+            ? read_ldt(&s, d)
+            : fail_at(
+                  &s, 1,
+                  "is neither an IES LM-63 file (no line TILT=) nor a EULUMDAT file (lines 2 and 3 are no single digits)");
     if (status == SR_OK)
         status = photometry_check(&d->p, name, error);
     if (status == SR_OK && !(sr_photometry_flux(&d->p, 0, 180) > 0))
@@ -299,7 +317,8 @@ sr_status sr_photometry_parse(const char *name, const void *data, size_t size, s
     return status;
 }
 
-sr_status sr_photometry_read(const char *path, struct sr_arena *arena, const struct sr_photometry **out, struct sr_error *error)
+sr_status sr_photometry_read(const char *path, struct sr_arena *arena, const struct sr_photometry **out,
+                             struct sr_error *error)
 {
     char *data;
     size_t size;
@@ -338,7 +357,8 @@ bool text_number(struct sr_array *text, double value, const char *after)
     return text_put(text, "%s%s", number, after);
 }
 
-sr_status sr_photometry_print(const struct sr_photometry *p, enum sr_photometry_format format, char **out, size_t *size, struct sr_error *error)
+sr_status sr_photometry_print(const struct sr_photometry *p, enum sr_photometry_format format, char **out, size_t *size,
+                              struct sr_error *error)
 {
     struct sr_array text = {0};
     *out = NULL;
@@ -348,8 +368,11 @@ sr_status sr_photometry_print(const struct sr_photometry *p, enum sr_photometry_
     sr_status status = format == SR_PHOTOMETRY_IES ? print_ies(p, &text) : print_ldt(p, &text);
     if (status != SR_OK) {
         sr_array_free(&text);
-        return sr_fail(error, status, status == SR_ERROR_INPUT ? "EULUMDAT does not keep C-planes that begin elsewhere than at 0 deg or whose number is not whole by symmetry"
-                                                               : "not enough memory to write a luminaire");
+        return sr_fail(
+            error, status,
+            status == SR_ERROR_INPUT
+                ? "EULUMDAT does not keep C-planes that begin elsewhere than at 0 deg or whose number is not whole by symmetry"
+                : "not enough memory to write a luminaire");
     }
     *out = text.data;
     *size = text.count;
@@ -372,8 +395,8 @@ sr_status sr_photometry_write(const char *path, const struct sr_photometry *p, s
 
 /* ---- drawing ---- */
 
-/* Cells of a grid that is at least as fine as the data, each with the mean of its corners and its middle: constant within,
- * so that the density is exact for what is drawn, and close to the intensity. */
+/* Cells of a grid that is at least as fine as the data, each with the mean of its corners and its middle: constant
+ * within, so that the density is exact for what is drawn, and close to the intensity. */
 bool sr_photometry_guide_build(const struct sr_photometry *p, struct sr_arena *arena, struct sr_photometry_guide *guide)
 {
     float narrowest = 180;
@@ -405,9 +428,11 @@ sr_vec3 sr_photometry_sample(const struct sr_photometry_guide *guide, sr_vec2 u,
 {
     const struct sr_piecewise2 *density = guide->density;
     sr_vec2 at = sr_piecewise2_sample(density, u, pdf);
-    float row = sr_clamp(floorf(at.y * (float)density->ny), 0, (float)density->ny - 1), within = sr_clamp(at.y * (float)density->ny - row, 0, 1);
+    float row = sr_clamp(floorf(at.y * (float)density->ny), 0, (float)density->ny - 1),
+          within = sr_clamp(at.y * (float)density->ny - row, 0, 1);
     double upper = guide->cosine[(uint32_t)row], lower = guide->cosine[(uint32_t)row + 1];
-    double cos_gamma = upper + (double)within * (lower - upper), sin_gamma = sqrt(fmax(0, 1 - cos_gamma * cos_gamma)), c = 2 * PI * (double)at.x;
+    double cos_gamma = upper + (double)within * (lower - upper), sin_gamma = sqrt(fmax(0, 1 - cos_gamma * cos_gamma)),
+           c = 2 * PI * (double)at.x;
     *pdf *= (float)(1 / (2 * PI * density->ny * (upper - lower)));
     return (sr_vec3){(float)(sin_gamma * cos(c)), (float)(sin_gamma * sin(c)), (float)-cos_gamma};
 }

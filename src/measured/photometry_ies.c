@@ -7,8 +7,9 @@
  *
  * Type C: vertical angles from nadir, horizontal ones counter-clockwise. Types B and A have other axes:
  *     B: d = (cos H sin V, -sin H, -cos H cos V)        A: d = (cos V cos H, -cos V sin H, sin V)     [1]
- * which is nadir at H = 0, V = 0 and at V = -90, as the standard has it; they are resampled. LM-63-1986, -1991, -1995, -2002
- * and -2019. Limits: TILT=INCLUDE is read, but the luminaire is taken to hang as it was measured; TILT=file is refused. */
+ * which is nadir at H = 0, V = 0 and at V = -90, as the standard has it; they are resampled. LM-63-1986, -1991, -1995,
+ * -2002 and -2019. Limits: TILT=INCLUDE is read, but the luminaire is taken to hang as it was measured; TILT=file is
+ * refused. */
 #include "measured/photometry_private.h"
 
 /* ---- reading ---- */
@@ -72,18 +73,23 @@ static bool read_numbers(const struct source *s, struct scan *t, double *out, si
 }
 
 /* Positive count that the rest of the file has room for. */
-static bool as_count(const struct source *s, const struct scan *t, double value, double least, const char *what, uint32_t *out)
+static bool as_count(const struct source *s, const struct scan *t, double value, double least, const char *what,
+                     uint32_t *out)
 {
     double room = (double)(t->end - t->at) / 2 + 1;
     if (!(value >= least && value == floor(value)) || value > room) {
-        fail_at(s, t->line, value > room && value == floor(value) ? "%g %s do not fit into the rest of the file" : "%g %s: a whole number is expected", value, what);
+        fail_at(s, t->line,
+                value > room && value == floor(value) ? "%g %s do not fit into the rest of the file"
+                                                      : "%g %s: a whole number is expected",
+                value, what);
         return false;
     }
     *out = (uint32_t)value;
     return true;
 }
 
-static bool read_tilt(const struct source *s, struct scan *t, struct photometry_draft *d, const char *begin, const char *end)
+static bool read_tilt(const struct source *s, struct scan *t, struct photometry_draft *d, const char *begin,
+                      const char *end)
 {
     while (begin < end && (*begin == ' ' || *begin == '='))
         ++begin;
@@ -92,8 +98,10 @@ static bool read_tilt(const struct source *s, struct scan *t, struct photometry_
     if (end - begin == 4 && text_has_prefix(begin, end, "NONE"))
         return true;
     if (!(end - begin == 7 && text_has_prefix(begin, end, "INCLUDE"))) {
-        fail_at(s, t->line, "TILT=%.*s: how the lamp's output changes as it tilts stands in another file, which is not read; TILT=NONE or TILT=INCLUDE is expected",
-                (int)(end - begin < 60 ? end - begin : 60), begin);
+        fail_at(
+            s, t->line,
+            "TILT=%.*s: how the lamp's output changes as it tilts stands in another file, which is not read; TILT=NONE or TILT=INCLUDE is expected",
+            (int)(end - begin < 60 ? end - begin : 60), begin);
         return false;
     }
     t->line++;
@@ -128,10 +136,12 @@ static double other_intensity(const struct other_type *o, sr_vec3 d)
     if (o->h[0] >= 0)
         h = fabs(h);
     const double edge = 1e-3;
-    if (v < (double)o->v[0] - edge || v > (double)o->v[o->nv - 1] + edge || h < (double)o->h[0] - edge || h > (double)o->h[o->nh - 1] + edge)
+    if (v < (double)o->v[0] - edge || v > (double)o->v[o->nv - 1] + edge || h < (double)o->h[0] - edge ||
+        h > (double)o->h[o->nh - 1] + edge)
         return 0;
     float s = 0, t = 0;
-    size_t i = o->nh > 1 ? (size_t)axis_find(o->h, (int)o->nh, (float)h, &s) : 0, j = o->nv > 1 ? (size_t)axis_find(o->v, (int)o->nv, (float)v, &t) : 0;
+    size_t i = o->nh > 1 ? (size_t)axis_find(o->h, (int)o->nh, (float)h, &s) : 0,
+           j = o->nv > 1 ? (size_t)axis_find(o->v, (int)o->nv, (float)v, &t) : 0;
     size_t right = o->nh > 1 ? o->nv : 0, up = o->nv > 1;
     const float *at = o->candela + i * o->nv + j;
     return (1 - (double)s) * ((1 - (double)t) * (double)at[0] + (double)t * (double)at[up]) +
@@ -145,7 +155,8 @@ static bool resample(const struct source *s, struct photometry_draft *d, const s
         const float *a = axis ? o->h : o->v;
         for (uint32_t i = 0; i < (axis ? o->nh : o->nv); ++i)
             if (!(fabsf(a[i]) <= 180) || (i > 0 && !(a[i] > a[i - 1]))) {
-                fail_at(s, 0, "%s angle %u is %g deg: increasing angles from -180 to 180 are expected", axis ? "horizontal" : "vertical", i + 1, (double)a[i]);
+                fail_at(s, 0, "%s angle %u is %g deg: increasing angles from -180 to 180 are expected",
+                        axis ? "horizontal" : "vertical", i + 1, (double)a[i]);
                 return false;
             }
     }
@@ -169,7 +180,8 @@ static bool resample(const struct source *s, struct photometry_draft *d, const s
     d->p.c = c;
     d->p.gamma = gamma;
     d->p.candela = candela;
-    photometry_note(d, "type %c photometry, resampled to C-planes by 5 deg and angles by 1 deg", o->type == 2 ? 'B' : 'A');
+    photometry_note(d, "type %c photometry, resampled to C-planes by 5 deg and angles by 1 deg",
+                    o->type == 2 ? 'B' : 'A');
     return true;
 }
 
@@ -200,14 +212,17 @@ static bool set_symmetry(const struct source *s, struct photometry_draft *d, flo
             p->symmetry = SR_PHOTOMETRY_AXIAL;
     } else if (last > 180 && last < 360) {
         p->symmetry = SR_PHOTOMETRY_ALL_PLANES;
-        photometry_note(d, "the last horizontal angle is %g deg, without the plane at 360, which is taken to be that at 0", (double)last);
+        photometry_note(d,
+                        "the last horizontal angle is %g deg, without the plane at 360, which is taken to be that at 0",
+                        (double)last);
     } else
         return fail_at(s, 0, "the last horizontal angle is %g deg: 0, 90, 180 or 360 is expected", (double)last), false;
 #undef IS
     return true;
 }
 
-static bool read_distribution(const struct source *s, struct scan *t, struct photometry_draft *d, const double head[10], double factor)
+static bool read_distribution(const struct source *s, struct scan *t, struct photometry_draft *d, const double head[10],
+                              double factor)
 {
     struct sr_photometry *p = &d->p;
     uint32_t nv, nh, type = (uint32_t)head[5];
@@ -216,7 +231,8 @@ static bool read_distribution(const struct source *s, struct scan *t, struct pho
     if ((double)nv * nh > (double)(t->end - t->at) / 2 + 1)
         return fail_at(s, t->line, "%u by %u intensities do not fit into the rest of the file", nv, nh), false;
     size_t n = (size_t)nv * nh;
-    float *v = sr_arena_alloc(s->arena, nv * sizeof *v), *h = sr_arena_alloc(s->arena, nh * sizeof *h), *I = sr_arena_alloc(s->arena, n * sizeof *I);
+    float *v = sr_arena_alloc(s->arena, nv * sizeof *v), *h = sr_arena_alloc(s->arena, nh * sizeof *h),
+          *I = sr_arena_alloc(s->arena, n * sizeof *I);
     if (!v || !h || !I)
         return no_memory(s);
     struct {
@@ -230,7 +246,8 @@ static bool read_distribution(const struct source *s, struct scan *t, struct pho
             double value;
             if (!next_number(t, &value)) {
                 if (t->at < t->end)
-                    fail_at(s, t->line, "%s: a number is expected, not \"%.*s\"", runs[k].what, (int)(t->end - t->at < 12 ? t->end - t->at : 12), t->at);
+                    fail_at(s, t->line, "%s: a number is expected, not \"%.*s\"", runs[k].what,
+                            (int)(t->end - t->at < 12 ? t->end - t->at : 12), t->at);
                 else
                     fail_at(s, t->line, "the file ends after %zu of %zu %s", i, runs[k].count, runs[k].what);
                 return false;
@@ -271,7 +288,8 @@ sr_status read_ies(const struct source *s, struct photometry_draft *d)
         if (year)
             p->year = year;
         else if (lines.line == 1 && text_has_prefix(begin, end, "IES"))
-            photometry_note(d, "the first line names an unknown edition of LM-63, read as that of 2002"), p->year = 2002;
+            photometry_note(d, "the first line names an unknown edition of LM-63, read as that of 2002"),
+                p->year = 2002;
         else if (text_has_prefix(word, end, "TILT"))
             has_tilt = true;
         else if (!add_line(s, d, begin, end))
@@ -295,7 +313,8 @@ sr_status read_ies(const struct source *s, struct photometry_draft *d)
         return fail_at(s, t.line, "%g lamps of %g lm", head[0], head[1]);
     double factor = head[2] * rest[0] * (p->year < 1995 ? rest[1] : 1);
     if (!(factor > 0 && factor < 1e9))
-        return fail_at(s, t.line, "multiplier %g, ballast factor %g and lamp factor %g: positive ones are expected", head[2], rest[0], rest[1]);
+        return fail_at(s, t.line, "multiplier %g, ballast factor %g and lamp factor %g: positive ones are expected",
+                       head[2], rest[0], rest[1]);
     double metre = head[6] == 1 ? 0.3048 : 1;
     for (int k = 7; k < 10; ++k)
         if (!(fabs(head[k]) < 1e4))
@@ -333,16 +352,22 @@ sr_status print_ies(const struct sr_photometry *p, struct sr_array *text)
     static const char *const wanted[] = {"TEST", "TESTLAB", "ISSUEDATE", "MANUFAC"};
     int year = p->year ? p->year : 2002;
     bool closes = p->symmetry == SR_PHOTOMETRY_ALL_PLANES && p->c[0] == 0;
-    bool ok = year < 1991 || text_put(text, "%s\n", year < 1995 ? "IESNA91" : year < 2002 ? "IESNA:LM-63-1995" : year < 2019 ? "IESNA:LM-63-2002" : "IES:LM-63-2019");
+    bool ok = year < 1991 || text_put(text, "%s\n",
+                                      year < 1995   ? "IESNA91"
+                                      : year < 2002 ? "IESNA:LM-63-1995"
+                                      : year < 2019 ? "IESNA:LM-63-2002"
+                                                    : "IES:LM-63-2019");
     for (uint32_t i = 0; ok && i < p->word_count; ++i)
-        ok = year < 1991 || !p->words[i].key[0] ? text_put(text, "%s%.240s\n", year < 1991 ? "" : "[OTHER] ", p->words[i].text)
-                                              : text_put(text, "[%.60s] %.180s\n", p->words[i].key, p->words[i].text);
+        ok = year < 1991 || !p->words[i].key[0]
+                 ? text_put(text, "%s%.240s\n", year < 1991 ? "" : "[OTHER] ", p->words[i].text)
+                 : text_put(text, "[%.60s] %.180s\n", p->words[i].key, p->words[i].text);
     for (int i = 0; ok && year >= 1991 && i < 4; ++i)
         ok = sr_photometry_word(p, wanted[i]) || text_put(text, "[%s] not told\n", wanted[i]);
     double lamps = p->lamp_count ? p->lamp_count : 1;
     ok = ok && text_put(text, "TILT=NONE\n") && text_number(text, lamps, " ");
     ok = ok && text_number(text, isnan(p->lamp_flux) ? -1 : (double)p->lamp_flux / lamps, " ");
-    double sign = p->is_round ? -1 : 1, size[3] = {sign * (double)p->along_c90, sign * (double)p->along_c0, (double)p->height};
+    double sign = p->is_round ? -1 : 1,
+           size[3] = {sign * (double)p->along_c90, sign * (double)p->along_c0, (double)p->height};
     ok = ok && text_put(text, "1 %u %u 1 2 ", p->gamma_count, p->c_count + closes);
     for (int k = 0; ok && k < 3; ++k)
         ok = text_number(text, size[k] == 0 ? 0 : size[k], k < 2 ? " " : "\n1 1 ");

@@ -5,8 +5,8 @@
  *
  * Lines 1 to 26 tell the luminaire, six more each set of lamps (the first is taken), ten direct ratios follow, then Mc
  * C-planes, Ng angles, and the planes that the symmetry Isym keeps: 0 all, 1 one, 2 C0 … C180, 3 C270 … C90 through C0,
- * 4 C0 … C90. A negative number of lamps is absolute photometry. A. W. Stockmar 1990, 1998. Limits: the direct ratios are
- * read over and written as 0. */
+ * 4 C0 … C90. A negative number of lamps is absolute photometry. A. W. Stockmar 1990, 1998. Limits: the direct ratios
+ * are read over and written as 0. */
 #include "measured/photometry_private.h"
 
 /* ---- reading ---- */
@@ -78,9 +78,19 @@ static bool next_word(struct lines *l, struct photometry_draft *d, const char *k
 /* Lines 13 to 26 and the lamps: *factor makes candelas of what follows. */
 static bool read_luminaire(struct lines *l, struct photometry_draft *d, double *factor, double told[2])
 {
-    static const char *const names[] = {"the luminaire's length [mm]", "its width [mm]", "its height [mm]", "the luminous length [mm]", "the luminous width [mm]",
-                                        "the luminous height at C0 [mm]", "that at C90 [mm]", "that at C180 [mm]", "that at C270 [mm]",
-                                        "the downward flux fraction [%]", "the light output ratio [%]", "the conversion factor", "the tilt [deg]"};
+    static const char *const names[] = {"the luminaire's length [mm]",
+                                        "its width [mm]",
+                                        "its height [mm]",
+                                        "the luminous length [mm]",
+                                        "the luminous width [mm]",
+                                        "the luminous height at C0 [mm]",
+                                        "that at C90 [mm]",
+                                        "that at C180 [mm]",
+                                        "that at C270 [mm]",
+                                        "the downward flux fraction [%]",
+                                        "the light output ratio [%]",
+                                        "the conversion factor",
+                                        "the tilt [deg]"};
     struct sr_photometry *p = &d->p;
     double v[13];
     for (int i = 0; i < 13; ++i) {
@@ -112,8 +122,10 @@ static bool read_luminaire(struct lines *l, struct photometry_draft *d, double *
         if (k > 0)
             continue;
         if (!next_value(l, &count, 1, "the number of lamps") || !next_word(l, d, "LAMP", "the type of lamps") ||
-            !next_value(l, &lumens, 0, "the flux of the lamps [lm]") || !next_word(l, d, "_COLOUR_TEMPERATURE", "the colour of the lamps") ||
-            !next_word(l, d, "_COLOUR_RENDERING", "the colour rendering of the lamps") || !next_value(l, &watts, 0, "the power of the lamps [W]"))
+            !next_value(l, &lumens, 0, "the flux of the lamps [lm]") ||
+            !next_word(l, d, "_COLOUR_TEMPERATURE", "the colour of the lamps") ||
+            !next_word(l, d, "_COLOUR_RENDERING", "the colour rendering of the lamps") ||
+            !next_value(l, &watts, 0, "the power of the lamps [W]"))
             return false;
         if (!(lumens >= 0 && lumens < 1e12) || !(fabs(count) < 1e6) || !(watts < 1e9))
             return fail_at(l->s, l->scan.line, "%g lamps of %g lm and %g W in all", count, lumens, watts), false;
@@ -136,19 +148,28 @@ static bool read_luminaire(struct lines *l, struct photometry_draft *d, double *
 /* How many planes a file keeps. */
 static uint32_t copies_of(enum sr_photometry_symmetry symmetry, uint32_t planes)
 {
-    return symmetry == SR_PHOTOMETRY_AXIAL ? 1 : symmetry == SR_PHOTOMETRY_QUADRANT ? planes / 4 + 1 : symmetry == SR_PHOTOMETRY_ALL_PLANES ? planes : planes / 2 + 1;
+    return symmetry == SR_PHOTOMETRY_AXIAL        ? 1
+           : symmetry == SR_PHOTOMETRY_QUADRANT   ? planes / 4 + 1
+           : symmetry == SR_PHOTOMETRY_ALL_PLANES ? planes
+                                                  : planes / 2 + 1;
 }
 
 static bool read_planes(struct lines *l, struct photometry_draft *d, uint32_t planes, uint32_t angles, double factor)
 {
     struct sr_photometry *p = &d->p;
     enum sr_photometry_symmetry sym = p->symmetry;
-    uint32_t whole = sym == SR_PHOTOMETRY_C0_C180 ? 2 : sym == SR_PHOTOMETRY_C90_C270 || sym == SR_PHOTOMETRY_QUADRANT ? 4 : 1;
+    uint32_t whole = sym == SR_PHOTOMETRY_C0_C180                                     ? 2
+                     : sym == SR_PHOTOMETRY_C90_C270 || sym == SR_PHOTOMETRY_QUADRANT ? 4
+                                                                                      : 1;
     if (planes % whole)
-        return fail_at(l->s, 4, "%u C-planes: a multiple of %u is expected for the symmetry %d", planes, whole, (int)sym), false;
+        return fail_at(l->s, 4, "%u C-planes: a multiple of %u is expected for the symmetry %d", planes, whole,
+                       (int)sym),
+               false;
     uint32_t count = copies_of(sym, planes);
-    float *c = sr_arena_alloc(l->s->arena, (planes + 1) * sizeof *c), *kept = sr_arena_alloc(l->s->arena, count * sizeof *kept),
-          *gamma = sr_arena_alloc(l->s->arena, angles * sizeof *gamma), *I = sr_arena_alloc(l->s->arena, (size_t)count * angles * sizeof *I);
+    float *c = sr_arena_alloc(l->s->arena, (planes + 1) * sizeof *c),
+          *kept = sr_arena_alloc(l->s->arena, count * sizeof *kept),
+          *gamma = sr_arena_alloc(l->s->arena, angles * sizeof *gamma),
+          *I = sr_arena_alloc(l->s->arena, (size_t)count * angles * sizeof *I);
     if (!c || !kept || !gamma || !I) {
         sr_fail(l->s->error, SR_ERROR_RESOURCE, "%s: not enough memory", l->s->name);
         return false;
@@ -173,7 +194,8 @@ static bool read_planes(struct lines *l, struct photometry_draft *d, uint32_t pl
             if (!next_value(l, &value, (double)NAN, "an intensity [cd/klm]"))
                 return false;
             if (!(value >= 0 && value * factor < 1e12))
-                return fail_at(l->s, l->scan.line, "an intensity of %g cd/klm: 0 to 1e12 cd are expected", value), false;
+                return fail_at(l->s, l->scan.line, "an intensity of %g cd/klm: 0 to 1e12 cd are expected", value),
+                       false;
             I[(size_t)to * angles + j] = (float)(value * factor);
         }
     }
@@ -194,11 +216,15 @@ sr_status read_ldt(const struct source *s, struct photometry_draft *d)
     // each number takes a line of its own
     double room = (double)s->size / 2;
     if (!next_word(&l, d, "MANUFAC", "the company") || !next_whole(&l, 0, 9, "the type of the luminaire", &type) ||
-        !next_whole(&l, 0, 4, "the symmetry", &symmetry) || !next_whole(&l, 1, fmin(100000, room), "the number of C-planes", &planes) ||
-        !next_value(&l, &step, 0, "the distance of C-planes [deg]") || !next_whole(&l, 2, fmin(100000, room), "the number of angles gamma", &angles) ||
-        !next_value(&l, &step, 0, "the distance of angles gamma [deg]") || !next_word(&l, d, "TEST", "the number of the report") ||
-        !next_word(&l, d, "LUMINAIRE", "the luminaire's name") || !next_word(&l, d, "LUMCAT", "the luminaire's number") ||
-        !next_word(&l, d, "_FILE", "the file's name") || !next_word(&l, d, "ISSUEDATE", "the date") || !read_luminaire(&l, d, &factor, told))
+        !next_whole(&l, 0, 4, "the symmetry", &symmetry) ||
+        !next_whole(&l, 1, fmin(100000, room), "the number of C-planes", &planes) ||
+        !next_value(&l, &step, 0, "the distance of C-planes [deg]") ||
+        !next_whole(&l, 2, fmin(100000, room), "the number of angles gamma", &angles) ||
+        !next_value(&l, &step, 0, "the distance of angles gamma [deg]") ||
+        !next_word(&l, d, "TEST", "the number of the report") ||
+        !next_word(&l, d, "LUMINAIRE", "the luminaire's name") ||
+        !next_word(&l, d, "LUMCAT", "the luminaire's number") || !next_word(&l, d, "_FILE", "the file's name") ||
+        !next_word(&l, d, "ISSUEDATE", "the date") || !read_luminaire(&l, d, &factor, told))
         return s->error->status;
     p->symmetry = (enum sr_photometry_symmetry)symmetry;
     if (symmetry == SR_PHOTOMETRY_ALL_PLANES && planes == 1)
@@ -215,9 +241,11 @@ sr_status read_ldt(const struct source *s, struct photometry_draft *d)
         return status;
     double flux = sr_photometry_flux(p, 0, 180), down = sr_photometry_flux(p, 0, 90);
     if (flux > 0 && told[0] > 0 && fabs(100 * down / flux - told[0]) > 2)
-        photometry_note(d, "the file tells %g %% of the flux downward, its intensities make %.1f %%", told[0], 100 * down / flux);
+        photometry_note(d, "the file tells %g %% of the flux downward, its intensities make %.1f %%", told[0],
+                        100 * down / flux);
     if (p->lamp_flux > 0 && told[1] > 0 && fabs(100 * flux / (double)p->lamp_flux - told[1]) > 2)
-        photometry_note(d, "the file tells a light output ratio of %g %%, its intensities make %.1f %%", told[1], 100 * flux / (double)p->lamp_flux);
+        photometry_note(d, "the file tells a light output ratio of %g %%, its intensities make %.1f %%", told[1],
+                        100 * flux / (double)p->lamp_flux);
     return SR_OK;
 }
 
@@ -265,7 +293,9 @@ static double plane_angle(const struct sr_photometry *p, uint32_t i, uint32_t pl
 sr_status print_ldt(const struct sr_photometry *p, struct sr_array *text)
 {
     static const uint32_t parts[] = {0, 0, 2, 2, 4};
-    uint32_t planes = p->symmetry == SR_PHOTOMETRY_AXIAL ? 1 : parts[p->symmetry] ? parts[p->symmetry] * (p->c_count - 1) : p->c_count;
+    uint32_t planes = p->symmetry == SR_PHOTOMETRY_AXIAL ? 1
+                      : parts[p->symmetry]               ? parts[p->symmetry] * (p->c_count - 1)
+                                                         : p->c_count;
     bool is_turned = p->symmetry == SR_PHOTOMETRY_C90_C270;
     if (p->c[0] != 0 && !is_turned)
         return SR_ERROR_INPUT;
@@ -274,17 +304,25 @@ sr_status print_ldt(const struct sr_photometry *p, struct sr_array *text)
     double flux = sr_photometry_flux(p, 0, 180), down = sr_photometry_flux(p, 0, 90);
     bool is_absolute = isnan(p->lamp_flux);
     double lamp_flux = is_absolute ? flux : (double)p->lamp_flux;
-    int type = p->symmetry == SR_PHOTOMETRY_AXIAL ? 1 : fmaxf(p->along_c0, p->along_c90) > 4 * fminf(p->along_c0, p->along_c90) ? 2 : 3;
+    int type = p->symmetry == SR_PHOTOMETRY_AXIAL                                        ? 1
+               : fmaxf(p->along_c0, p->along_c90) > 4 * fminf(p->along_c0, p->along_c90) ? 2
+                                                                                         : 3;
     double step_c = p->symmetry == SR_PHOTOMETRY_AXIAL ? 0 : even_step(p->c, p->c_count);
-    bool ok = put_word(text, p, "MANUFAC", "not told") && text_put(text, "%d\n%d\n%u\n", type, (int)p->symmetry, planes) && text_number(text, step_c, "\n") &&
-              text_put(text, "%u\n", p->gamma_count) && text_number(text, even_step(p->gamma, p->gamma_count), "\n") && put_word(text, p, "TEST", "not told") &&
-              put_word(text, p, "LUMINAIRE", "not told") && put_word(text, p, "LUMCAT", "") && put_word(text, p, "_FILE", "") && put_word(text, p, "ISSUEDATE", "");
-    double height = 1000 * (double)p->height, length = 1000 * (double)p->along_c90, width = p->is_round ? 0 : 1000 * (double)p->along_c0;
-    double numbers[] = {length, width, height, length, width, height, height, height, height, 100 * down / flux, 100 * flux / lamp_flux, 1, 0};
+    bool ok = put_word(text, p, "MANUFAC", "not told") &&
+              text_put(text, "%d\n%d\n%u\n", type, (int)p->symmetry, planes) && text_number(text, step_c, "\n") &&
+              text_put(text, "%u\n", p->gamma_count) && text_number(text, even_step(p->gamma, p->gamma_count), "\n") &&
+              put_word(text, p, "TEST", "not told") && put_word(text, p, "LUMINAIRE", "not told") &&
+              put_word(text, p, "LUMCAT", "") && put_word(text, p, "_FILE", "") && put_word(text, p, "ISSUEDATE", "");
+    double height = 1000 * (double)p->height, length = 1000 * (double)p->along_c90,
+           width = p->is_round ? 0 : 1000 * (double)p->along_c0;
+    double numbers[] = {
+        length, width, height, length, width, height, height, height, height, 100 * down / flux, 100 * flux / lamp_flux,
+        1,      0};
     for (int i = 0; ok && i < 13; ++i)
         ok = text_number(text, numbers[i], "\n");
-    ok = ok && text_put(text, "1\n%s%u\n", is_absolute ? "-" : "", p->lamp_count ? p->lamp_count : 1) && put_word(text, p, "LAMP", "not told") &&
-         text_number(text, lamp_flux, "\n") && put_word(text, p, "_COLOUR_TEMPERATURE", "") && put_word(text, p, "_COLOUR_RENDERING", "") &&
+    ok = ok && text_put(text, "1\n%s%u\n", is_absolute ? "-" : "", p->lamp_count ? p->lamp_count : 1) &&
+         put_word(text, p, "LAMP", "not told") && text_number(text, lamp_flux, "\n") &&
+         put_word(text, p, "_COLOUR_TEMPERATURE", "") && put_word(text, p, "_COLOUR_RENDERING", "") &&
          text_number(text, (double)p->power_W, "\n") && text_put(text, "0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n");
     for (uint32_t i = 0; ok && i < planes; ++i)
         ok = text_number(text, plane_angle(p, i, planes), "\n");

@@ -21,7 +21,8 @@ sr_status print_ldt(const struct sr_photometry *p, struct sr_array *text);
 
 SR_PRINTF(2, 3) void photometry_note(struct photometry_draft *d, const char *format, ...);
 /* A word without blanks at its ends and without control characters; false: no memory. More than fit are left out. */
-bool photometry_add_word(const struct source *s, struct photometry_draft *d, const char *key, const char *begin, const char *end);
+bool photometry_add_word(const struct source *s, struct photometry_draft *d, const char *key, const char *begin,
+                         const char *end);
 /* Angles strictly increasing and finite, candelas finite and not negative, planes as the symmetry has them. */
 sr_status photometry_check(const struct sr_photometry *p, const char *name, struct sr_error *error);
 

@@ -3,9 +3,10 @@
  *
  *     f = M_00(phi_d, theta_d, theta_h, lambda)     [1/sr]
  *
- * fields theta_h, theta_d, phi_d [rad], wvls [nm, uint16], M [phi_d, theta_d, theta_h, wvls, 4, 4]. S.-H. Baek et al., Image-based
- * acquisition and modeling of polarimetric reflectance, 2020. Linear between; what is not a number lies below the horizon and
- * counts as 0, so does what is negative. Files that name no angles have them evenly from 0 to 90 deg, phi_d from -180 to 180. */
+ * fields theta_h, theta_d, phi_d [rad], wvls [nm, uint16], M [phi_d, theta_d, theta_h, wvls, 4, 4]. S.-H. Baek et al.,
+ * Image-based acquisition and modeling of polarimetric reflectance, 2020. Linear between; what is not a number lies
+ * below the horizon and counts as 0, so does what is negative. Files that name no angles have them evenly from 0 to 90
+ * deg, phi_d from -180 to 180. */
 #include "measured/private.h"
 
 struct polarised {

@@ -3,8 +3,8 @@
  *
  *     E(wi) = INTEGRAL f |cos_theta_o| dwo = INTEGRAL f |cos_theta_o| 4 |wi.m| dm,   dm = sin_theta_m pi u 2 pi du dv
  *
- * over half vectors m, theta_m = u^2 pi / 2, so that nodes lie close where lobes are narrow: Gauss-Legendre in u, even in v.
- * Data that are constant over patches are summed patch by patch instead. */
+ * over half vectors m, theta_m = u^2 pi / 2, so that nodes lie close where lobes are narrow: Gauss-Legendre in u, even
+ * in v. Data that are constant over patches are summed patch by patch instead. */
 #include "measured/private.h"
 
 enum { MAX_NODES = 128 };

@@ -6,9 +6,10 @@
  *     f |cos_theta_i| = spectra(s | phi_o, theta_o, lambda) [ndf(u_m) / (4 sigma(u_o)) where jacobian = 1]
  *
  * J. Dupuy & W. Jakob, An adaptive parameterization for efficient material acquisition and rendering, 2018. The product
- * contains the cosine. Slices are linear in phi_o and theta_o; phi that covers 1/2 or 1/4 of a turn stands for all of it by
- * symmetry. Fields: theta_i, phi_i, ndf, sigma, vndf [phi, theta, y, x], spectra [phi, theta, lambda, y, x] with wavelengths, or
- * rgb [phi, theta, 3, y, x]; jacobian; luminance is what others draw directions by, here guide.c does. */
+ * contains the cosine. Slices are linear in phi_o and theta_o; phi that covers 1/2 or 1/4 of a turn stands for all of
+ * it by symmetry. Fields: theta_i, phi_i, ndf, sigma, vndf [phi, theta, y, x], spectra [phi, theta, lambda, y, x] with
+ * wavelengths, or rgb [phi, theta, 3, y, x]; jacobian; luminance is what others draw directions by, here guide.c does.
+ */
 #include "measured/private.h"
 
 #define LEAST_COSINE                                                                                                   \
@@ -350,8 +351,8 @@ static sr_vec3 polar(double theta, double phi)
     return (sr_vec3){(float)(sin(theta) * cos(phi)), (float)(sin(theta) * sin(phi)), (float)cos(theta)};
 }
 
-/* Any positive density would do; this one follows f where it is large: mean of f over some pairs about each half vector,
- * times the cosine. sigma is the projected area that belongs to it, vndf the density of what is seen. */
+/* Any positive density would do; this one follows f where it is large: mean of f over some pairs about each half
+ * vector, times the cosine. sigma is the projected area that belongs to it, vndf the density of what is seen. */
 static void plan_microfacets(struct plan *p, sr_measured_source source, void *user)
 {
     int n = p->n;

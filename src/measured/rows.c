@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Single measurements (theta_i, phi_i, theta_o, phi_o; values): checked, then made a grid where they fill one, else a cloud.
+/* Single measurements (theta_i, phi_i, theta_o, phi_o; values): checked, then made a grid where they fill one, else a
+ * cloud.
  *
- * Angles are in radians from +z; theta_o above 90 deg is light that has passed through. Where all measurements share one
- * phi_i the data are isotropic, and only phi_o - phi_i counts. */
+ * Angles are in radians from +z; theta_o above 90 deg is light that has passed through. Where all measurements share
+ * one phi_i the data are isotropic, and only phi_o - phi_i counts. */
 #include "measured/private.h"
 
 static sr_status check(const struct source *s, struct rows *rows, struct sr_measured *m)

@@ -6,11 +6,11 @@
  *     theta_i phi_i theta_o phi_o lambda f      names of the columns, in any order; without them this is their order
  *     0 0 30 0 550 0.31                         separated by blanks, commas or semicolons
  *
- * Columns: theta_i, phi_i (none: 0), theta_o or theta_s, phi_o or phi_s (none: 0), lambda [nm], f; or, without lambda, one
- * column for each wavelength (550nm), or R G B (linear sRGB), or X Y Z (Y = 1 for a perfect reflector). Names that begin
- * otherwise are skipped. With a column lambda all pairs of directions must have the same wavelengths. Azimuths are those of
- * directions away from the surface. ASTM: lines KEY value up to "VARS theta_i,phi_i,theta_s,phi_s,…"; angles in radians
- * unless one is above 2 pi (ASTM E1392-96, as stray-light programs write it). */
+ * Columns: theta_i, phi_i (none: 0), theta_o or theta_s, phi_o or phi_s (none: 0), lambda [nm], f; or, without lambda,
+ * one column for each wavelength (550nm), or R G B (linear sRGB), or X Y Z (Y = 1 for a perfect reflector). Names that
+ * begin otherwise are skipped. With a column lambda all pairs of directions must have the same wavelengths. Azimuths
+ * are those of directions away from the surface. ASTM: lines KEY value up to "VARS theta_i,phi_i,theta_s,phi_s,…";
+ * angles in radians unless one is above 2 pi (ASTM E1392-96, as stray-light programs write it). */
 #include "measured/private.h"
 
 #include <stdio.h>

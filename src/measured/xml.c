@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* LBNL's BSDF XML (WINDOW, Radiance): what is in the file, by Expat; klems.c and tree.c make sense of it.
  *
- * WindowElement / Optical / Layer / Material, DataDefinition (IncidentDataStructure, AngleBasis), and WavelengthData for each
- * wavelength and direction: Wavelength, WavelengthDataBlock (WavelengthDataDirection, ColumnAngleBasis, RowAngleBasis or
- * AngleBasis, ScatteringData). Read are Visible (Y), CIE-X and CIE-Z, CIE-u and CIE-v; others, such as Solar, only where no
- * Visible is there. Documents with a DOCTYPE are refused: BSDF files have none, entities only serve mischief. */
+ * WindowElement / Optical / Layer / Material, DataDefinition (IncidentDataStructure, AngleBasis), and WavelengthData
+ * for each wavelength and direction: Wavelength, WavelengthDataBlock (WavelengthDataDirection, ColumnAngleBasis,
+ * RowAngleBasis or AngleBasis, ScatteringData). Read are Visible (Y), CIE-X and CIE-Z, CIE-u and CIE-v; others, such as
+ * Solar, only where no Visible is there. Documents with a DOCTYPE are refused: BSDF files have none, entities only
+ * serve mischief. */
 #include "measured/private.h"
 
 #include <expat.h>
@@ -292,7 +293,8 @@ static sr_status understand(struct xml_file *x, struct sr_measured *m)
         m->sides |= SR_MEASURED_TRANSMISSION;
         m->back_sides |= SR_MEASURED_TRANSMISSION;
     }
-    // a sheet of which one side only was measured, and only in reflection, is taken to be opaque and the same on both sides
+    // a sheet of which one side only was measured, and only in reflection, is taken to be opaque and the same on both
+    // sides
     m->has_back = (m->sides | m->back_sides) != SR_MEASURED_REFLECTION || (m->sides && m->back_sides);
     m->note = !m->has_back ? "only one side was measured: the other was taken to be like it"
               : text_equal(x->wavelength, "Visible")

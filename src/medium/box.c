@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* A ray's way through a box of equal cells, each with a majorant: a three-dimensional digital differential analyser (J. Amanatides
- * & A. Woo, A Fast Voxel Traversal Algorithm, 1987).
+/* A ray's way through a box of equal cells, each with a majorant: a three-dimensional digital differential analyser (J.
+ * Amanatides & A. Woo, A Fast Voxel Traversal Algorithm, 1987).
  *
- * The next crossing along each axis is computed from the plane itself, t = (plane - o) / d, not by adding up steps, so that no error
- * grows; a crossing never comes before the one before it, as rounding keeps the order of the planes. Each cell's majorant holds
- * 1/64 of a cell around it, too, which is more than a point of the ray may be off by rounding. */
+ * The next crossing along each axis is computed from the plane itself, t = (plane - o) / d, not by adding up steps, so
+ * that no error grows; a crossing never comes before the one before it, as rounding keeps the order of the planes. Each
+ * cell's majorant holds 1/64 of a cell around it, too, which is more than a point of the ray may be off by rounding. */
 #include "medium/private.h"
 
 static const double around = 1.0 / 64; // of a cell
 static const float standing = 1e-30f;  // [cells/m] slower than that, no ray meets a plane
 
-sr_status sr_medium_box_set(struct sr_medium_box *box, const struct sr_transform *medium_to_world, sr_vec3 p0, sr_vec3 p1, const int32_t cells[3],
-                            struct sr_arena *arena, struct sr_error *error)
+sr_status sr_medium_box_set(struct sr_medium_box *box, const struct sr_transform *medium_to_world, sr_vec3 p0,
+                            sr_vec3 p1, const int32_t cells[3], struct sr_arena *arena, struct sr_error *error)
 {
     const float(*m)[4] = medium_to_world->inverse;
     if (m[3][0] != 0 || m[3][1] != 0 || m[3][2] != 0 || !(m[3][3] > 0))
@@ -20,7 +20,9 @@ sr_status sr_medium_box_set(struct sr_medium_box *box, const struct sr_transform
     for (int k = 0; k < 3; ++k) {
         double a = (double)sr_component(p0, k), b = (double)sr_component(p1, k), lo = fmin(a, b), extent = fabs(b - a);
         if (!(extent > 0) || !isfinite(extent))
-            return sr_fail(error, SR_ERROR_INPUT, "the corners \"p0\" and \"p1\" of a medium span no box: its extent along %c is %g m", "xyz"[k], extent);
+            return sr_fail(error, SR_ERROR_INPUT,
+                           "the corners \"p0\" and \"p1\" of a medium span no box: its extent along %c is %g m",
+                           "xyz"[k], extent);
         double per_m = cells[k] / extent;
         for (int j = 0; j < 3; ++j)
             box->to_cells[k][j] = (float)((double)m[k][j] * scale * per_m);
@@ -28,14 +30,17 @@ sr_status sr_medium_box_set(struct sr_medium_box *box, const struct sr_transform
         box->cells[k] = cells[k];
         for (int j = 0; j < 4; ++j)
             if (!isfinite(box->to_cells[k][j]))
-                return sr_fail(error, SR_ERROR_INPUT, "the box of a medium is too small or too far away for its transform");
+                return sr_fail(error, SR_ERROR_INPUT,
+                               "the box of a medium is too small or too far away for its transform");
     }
     box->to_unit = (sr_vec3){1 / (float)cells[0], 1 / (float)cells[1], 1 / (float)cells[2]};
     box->largest = sr_arena_alloc(arena, (size_t)cells[0] * (size_t)cells[1] * (size_t)cells[2] * sizeof(float));
     return box->largest ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "no memory for the majorants of a medium");
 }
 
-void sr_medium_box_fill(struct sr_medium_box *box, float (*largest)(const void *context, const double lo[3], const double hi[3]), const void *context)
+void sr_medium_box_fill(struct sr_medium_box *box,
+                        float (*largest)(const void *context, const double lo[3], const double hi[3]),
+                        const void *context)
 {
     const int32_t *n = box->cells;
     float *out = box->largest;
@@ -48,7 +53,8 @@ void sr_medium_box_fill(struct sr_medium_box *box, float (*largest)(const void *
             }
 }
 
-void sr_medium_box_begin(const struct sr_medium_box *box, sr_vec3 o, sr_vec3 d, float t_max, sr_spectrum scale, struct sr_medium_walk *walk)
+void sr_medium_box_begin(const struct sr_medium_box *box, sr_vec3 o, sr_vec3 d, float t_max, sr_spectrum scale,
+                         struct sr_medium_walk *walk)
 {
     float from[3], speed[3], t0 = 0, t1 = t_max;
     for (int k = 0; k < 3; ++k) {
@@ -79,7 +85,8 @@ void sr_medium_box_begin(const struct sr_medium_box *box, sr_vec3 o, sr_vec3 d, 
         float place = sr_clamp(from[k] + t0 * speed[k], 0, (float)(box->cells[k] - 1));
         walk->cell[k] = (int32_t)place;
         walk->way[k] = speed[k] > 0 ? 1 : speed[k] < 0 ? -1 : 0;
-        walk->next[k] = walk->way[k] ? ((float)(walk->cell[k] + (walk->way[k] > 0)) - from[k]) * walk->step[k] : INFINITY;
+        walk->next[k] =
+            walk->way[k] ? ((float)(walk->cell[k] + (walk->way[k] > 0)) - from[k]) * walk->step[k] : INFINITY;
     }
 }
 
@@ -91,7 +98,9 @@ bool sr_medium_box_next(struct sr_medium_walk *walk, struct sr_medium_segment *s
         int k = walk->next[0] < walk->next[1] ? 0 : 1;
         k = walk->next[2] < walk->next[k] ? 2 : k;
         int32_t *cell = walk->cell;
-        float largest = box->largest[((size_t)cell[2] * (size_t)box->cells[1] + (size_t)cell[1]) * (size_t)box->cells[0] + (size_t)cell[0]];
+        float largest =
+            box->largest[((size_t)cell[2] * (size_t)box->cells[1] + (size_t)cell[1]) * (size_t)box->cells[0] +
+                         (size_t)cell[0]];
         float t0 = walk->t, t1 = walk->t_max;
         if (walk->next[k] < walk->t_max) {
             int32_t there = cell[k] + walk->way[k];

@@ -5,8 +5,8 @@
  *     d   = sum over i = 0 … 4 of 2^(-1-i) N(1.99^i q)
  *     density(p) = clamp(clamp(4.5 (1 - y) density d, 0, 1) + 2 max(0, 1/2 - y), 0, 1)                    [1]
  *
- * p in the medium's space, N: Perlin's noise (2002), DN its differences over 0.01 divided by that. The majorant is what the density
- * cannot exceed at a height y, as |N| <= 1.05. */
+ * p in the medium's space, N: Perlin's noise (2002), DN its differences over 0.01 divided by that. The majorant is what
+ * the density cannot exceed at a height y, as |N| <= 1.05. */
 #include "medium/private.h"
 
 struct cloud {
@@ -18,12 +18,18 @@ struct cloud {
 };
 
 static const struct sr_param params[] = {
-    {SR_PARAM_FLOAT, "density", "1", 0, INFINITY, 1, offsetof(struct cloud, density), "factor of the noise: how much of the box is cloud"},
-    {SR_PARAM_FLOAT, "wispiness", "1", -INFINITY, INFINITY, 1, offsetof(struct cloud, wispiness), "how far finer noise displaces the cloud; none: not above 0"},
-    {SR_PARAM_FLOAT, "frequency", "1/m", -INFINITY, INFINITY, 5, offsetof(struct cloud, frequency), "of the coarsest noise"},
-    {SR_PARAM_FLOAT, "g", "1", -SR_MEDIUM_MOST_G, SR_MEDIUM_MOST_G, 0, offsetof(struct cloud, g), "mean cosine of scattering, Henyey & Greenstein"},
-    {SR_PARAM_UNBOUNDED, "sigma_a", "1/m", 0, INFINITY, 1, offsetof(struct cloud, sigma_a), "absorption coefficient where the density is 1"},
-    {SR_PARAM_UNBOUNDED, "sigma_s", "1/m", 0, INFINITY, 1, offsetof(struct cloud, sigma_s), "scattering coefficient where the density is 1"},
+    {SR_PARAM_FLOAT, "density", "1", 0, INFINITY, 1, offsetof(struct cloud, density),
+     "factor of the noise: how much of the box is cloud"},
+    {SR_PARAM_FLOAT, "wispiness", "1", -INFINITY, INFINITY, 1, offsetof(struct cloud, wispiness),
+     "how far finer noise displaces the cloud; none: not above 0"},
+    {SR_PARAM_FLOAT, "frequency", "1/m", -INFINITY, INFINITY, 5, offsetof(struct cloud, frequency),
+     "of the coarsest noise"},
+    {SR_PARAM_FLOAT, "g", "1", -SR_MEDIUM_MOST_G, SR_MEDIUM_MOST_G, 0, offsetof(struct cloud, g),
+     "mean cosine of scattering, Henyey & Greenstein"},
+    {SR_PARAM_UNBOUNDED, "sigma_a", "1/m", 0, INFINITY, 1, offsetof(struct cloud, sigma_a),
+     "absorption coefficient where the density is 1"},
+    {SR_PARAM_UNBOUNDED, "sigma_s", "1/m", 0, INFINITY, 1, offsetof(struct cloud, sigma_s),
+     "scattering coefficient where the density is 1"},
     {SR_PARAM_POINT3, "p0", "m", -INFINITY, INFINITY, 0, offsetof(struct cloud, p0), "corner of the box"},
     {SR_PARAM_POINT3, "p1", "m", -INFINITY, INFINITY, 1, offsetof(struct cloud, p1), "opposite corner"},
     {.name = NULL},
@@ -38,7 +44,8 @@ static float density_at_height(const struct cloud *m, float y, float noise)
 static float largest_density(const void *context, const double lo[3], const double hi[3])
 {
     const struct cloud *m = context;
-    float most_noise = 1.05f * 0.96875f; // it falls with the height, where noise is above 0; above the height 1 noise below 0 counts
+    float most_noise =
+        1.05f * 0.96875f; // it falls with the height, where noise is above 0; above the height 1 noise below 0 counts
     float bottom = sr_min(m->p0.y, m->p1.y), extent = fabsf(m->p1.y - m->p0.y);
     float y0 = bottom + (float)lo[1] * extent, y1 = bottom + (float)hi[1] * extent;
     return sr_max(density_at_height(m, y0, most_noise), density_at_height(m, y1, -most_noise));
@@ -50,7 +57,8 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
     const int32_t cells[3] = {1, 32, 1};
     if (!isfinite(m->density) || !isfinite(m->wispiness) || !isfinite(m->frequency))
         return sr_fail(error, SR_ERROR_INPUT, "\"density\", \"wispiness\" and \"frequency\" must be finite");
-    if (sr_medium_scale(&m->sigma_a, &m->sigma_s, 1, error) || sr_medium_box_set(&m->box, &m->common.medium_to_world, m->p0, m->p1, cells, arena, error))
+    if (sr_medium_scale(&m->sigma_a, &m->sigma_s, 1, error) ||
+        sr_medium_box_set(&m->box, &m->common.medium_to_world, m->p0, m->p1, cells, arena, error))
         return error->status;
     sr_medium_box_fill(&m->box, largest_density, m);
     return SR_OK;
@@ -60,7 +68,8 @@ static sr_vec3 noise_slope(sr_vec3 p)
 {
     const float step = 0.01f;
     float n = sr_noise(p);
-    return (sr_vec3){(sr_noise((sr_vec3){p.x + step, p.y, p.z}) - n) / step, (sr_noise((sr_vec3){p.x, p.y + step, p.z}) - n) / step,
+    return (sr_vec3){(sr_noise((sr_vec3){p.x + step, p.y, p.z}) - n) / step,
+                     (sr_noise((sr_vec3){p.x, p.y + step, p.z}) - n) / step,
                      (sr_noise((sr_vec3){p.x, p.y, p.z + step}) - n) / step};
 }
 
@@ -89,7 +98,8 @@ static void at(const void *self, sr_vec3 p, const struct sr_wavelengths *w, stru
     out->g = m->g;
 }
 
-static void begin(const void *self, sr_vec3 o, sr_vec3 d, float t_max, const struct sr_wavelengths *w, struct sr_medium_walk *walk)
+static void begin(const void *self, sr_vec3 o, sr_vec3 d, float t_max, const struct sr_wavelengths *w,
+                  struct sr_medium_walk *walk)
 {
     const struct cloud *m = self;
     sr_medium_box_begin(&m->box, o, d, t_max, sr_spd_along(&m->sigma_a, w) + sr_spd_along(&m->sigma_s, w), walk);
@@ -108,5 +118,12 @@ static bool glows(const void *self)
 }
 
 const struct sr_medium_model sr_medium_cloud = {
-    .name = "cloud", .params = params, .size = sizeof(struct cloud), .prepare = prepare, .at = at, .begin = begin, .next = next, .glows = glows,
+    .name = "cloud",
+    .params = params,
+    .size = sizeof(struct cloud),
+    .prepare = prepare,
+    .at = at,
+    .begin = begin,
+    .next = next,
+    .glows = glows,
 };

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* What a medium radiates where it is thick.
  *
- *     Le'(lambda) = scale Le(lambda) / INTEGRAL Le ybar dlambda          so  INTEGRAL Le' ybar dlambda = scale   [cd/m^2]
+ *     Le'(lambda) = scale Le(lambda) / INTEGRAL Le ybar dlambda          so  INTEGRAL Le' ybar dlambda = scale [cd/m^2]
  *
- * as lights do: spectra contain 683 lm/W. Of an rgb emission the white alone is scaled to 1, and rgb multiplies it (pbrt-v4). In
- * scenes of absolute units Le' = 683 scale Le, and black bodies follow Planck's law (1901). */
+ * as lights do: spectra contain 683 lm/W. Of an rgb emission the white alone is scaled to 1, and rgb multiplies it
+ * (pbrt-v4). In scenes of absolute units Le' = 683 scale Le, and black bodies follow Planck's law (1901). */
 #include "medium/private.h"
 
 static const float coldest = 100; // [K] below that nothing is seen: Le is 0, as in pbrt
@@ -14,7 +14,8 @@ static double planck_maximum(float temperature) // [W m^-2 sr^-1 nm^-1], at the 
     return sr_planck(2.897771955e6 / (double)temperature, (double)temperature);
 }
 
-sr_status sr_medium_set_emission(struct sr_spd *Le, const struct sr_medium_common *common, float scale, struct sr_error *error)
+sr_status sr_medium_set_emission(struct sr_spd *Le, const struct sr_medium_common *common, float scale,
+                                 struct sr_error *error)
 {
     if (Le->kind == SR_SPD_NONE || !(scale * sr_spd_max(Le) > 0)) {
         *Le = (struct sr_spd){.kind = SR_SPD_NONE};
@@ -29,7 +30,9 @@ sr_status sr_medium_set_emission(struct sr_spd *Le, const struct sr_medium_commo
             measured = (struct sr_spd){.kind = SR_SPD_TABLE, .scale = 1, .table = Le->table};
         double luminance = sr_spd_luminous_integral(&measured);
         if (!(luminance > 0))
-            return sr_fail(error, SR_ERROR_INPUT, "the emission spectrum \"Le\" has no luminance, so that it cannot be scaled to the brightness asked for");
+            return sr_fail(
+                error, SR_ERROR_INPUT,
+                "the emission spectrum \"Le\" has no luminance, so that it cannot be scaled to the brightness asked for");
         factor /= luminance;
     }
     Le->scale = (float)((double)Le->scale * factor);
@@ -51,6 +54,7 @@ sr_status sr_medium_scale(struct sr_spd *sigma_a, struct sr_spd *sigma_s, float 
     sigma_a->scale *= scale;
     sigma_s->scale *= scale;
     if (!isfinite(sr_spd_max(sigma_a) + sr_spd_max(sigma_s)))
-        return sr_fail(error, SR_ERROR_INPUT, "\"sigma_a\" and \"sigma_s\" times \"scale\" %g are not finite", (double)scale);
+        return sr_fail(error, SR_ERROR_INPUT, "\"sigma_a\" and \"sigma_s\" times \"scale\" %g are not finite",
+                       (double)scale);
     return SR_OK;
 }

@@ -3,8 +3,8 @@
  *
  *     sigma_t = scale (sigma_a + sigma_s) [1/m],     T(t) = exp(-sigma_t t)     (P. Bouguer 1729)
  *
- * It has no bounds: the surfaces around it, or the camera that stands in it, say where it is. The transform in force does not
- * scale its coefficients. */
+ * It has no bounds: the surfaces around it, or the camera that stands in it, say where it is. The transform in force
+ * does not scale its coefficients. */
 #include "medium/private.h"
 
 struct homogeneous {
@@ -15,12 +15,17 @@ struct homogeneous {
 };
 
 static const struct sr_param params[] = {
-    {SR_PARAM_UNBOUNDED, "sigma_a", "1/m", 0, INFINITY, 1, offsetof(struct homogeneous, sigma_a), "absorption coefficient"},
-    {SR_PARAM_UNBOUNDED, "sigma_s", "1/m", 0, INFINITY, 1, offsetof(struct homogeneous, sigma_s), "scattering coefficient"},
-    {SR_PARAM_FLOAT, "scale", "1", 0, INFINITY, 1, offsetof(struct homogeneous, scale), "factor of both; presets are in 1/mm, so 1000 for scenes in metres"},
+    {SR_PARAM_UNBOUNDED, "sigma_a", "1/m", 0, INFINITY, 1, offsetof(struct homogeneous, sigma_a),
+     "absorption coefficient"},
+    {SR_PARAM_UNBOUNDED, "sigma_s", "1/m", 0, INFINITY, 1, offsetof(struct homogeneous, sigma_s),
+     "scattering coefficient"},
+    {SR_PARAM_FLOAT, "scale", "1", 0, INFINITY, 1, offsetof(struct homogeneous, scale),
+     "factor of both; presets are in 1/mm, so 1000 for scenes in metres"},
     {SR_PARAM_STRING, "preset", "1", 0, 0, 0, offsetof(struct homogeneous, preset), ""},
-    {SR_PARAM_FLOAT, "g", "1", -SR_MEDIUM_MOST_G, SR_MEDIUM_MOST_G, 0, offsetof(struct homogeneous, g), "mean cosine of scattering, Henyey & Greenstein"},
-    {SR_PARAM_ILLUMINANT, "Le", "cd/m^2", 0, INFINITY, NAN, offsetof(struct homogeneous, Le), "radiance where it is thick: it emits sigma_a Le on each metre"},
+    {SR_PARAM_FLOAT, "g", "1", -SR_MEDIUM_MOST_G, SR_MEDIUM_MOST_G, 0, offsetof(struct homogeneous, g),
+     "mean cosine of scattering, Henyey & Greenstein"},
+    {SR_PARAM_ILLUMINANT, "Le", "cd/m^2", 0, INFINITY, NAN, offsetof(struct homogeneous, Le),
+     "radiance where it is thick: it emits sigma_a Le on each metre"},
     {SR_PARAM_FLOAT, "Lescale", "1", 0, INFINITY, 1, offsetof(struct homogeneous, Lescale), "factor of Le"},
     {.name = NULL},
 };
@@ -46,7 +51,8 @@ static void at(const void *self, sr_vec3 p, const struct sr_wavelengths *w, stru
     out->g = m->g;
 }
 
-static void begin(const void *self, sr_vec3 o, sr_vec3 d, float t_max, const struct sr_wavelengths *w, struct sr_medium_walk *walk)
+static void begin(const void *self, sr_vec3 o, sr_vec3 d, float t_max, const struct sr_wavelengths *w,
+                  struct sr_medium_walk *walk)
 {
     (void)o, (void)d;
     const struct homogeneous *m = self;
@@ -71,6 +77,13 @@ static bool glows(const void *self)
 }
 
 const struct sr_medium_model sr_medium_homogeneous = {
-    .name = "homogeneous", .params = params, .size = sizeof(struct homogeneous), .is_uniform = true, .prepare = prepare,
-    .at = at, .begin = begin, .next = next, .glows = glows,
+    .name = "homogeneous",
+    .params = params,
+    .size = sizeof(struct homogeneous),
+    .is_uniform = true,
+    .prepare = prepare,
+    .at = at,
+    .begin = begin,
+    .next = next,
+    .glows = glows,
 };

@@ -3,8 +3,8 @@
  *
  *     dL/ds = -(sigma_a + sigma_s) L + sigma_a Le + sigma_s integral p(w, w') L(w') dw'     [W m^-3 sr^-1 nm^-1]
  *
- * A medium is two words, {model, self}. Along a ray it tells segments, each with a majorant of sigma_t that holds in all of it;
- * what a path does with them (delta and ratio tracking) is the integrator's. */
+ * A medium is two words, {model, self}. Along a ray it tells segments, each with a majorant of sigma_t that holds in
+ * all of it; what a path does with them (delta and ratio tracking) is the integrator's. */
 #ifndef SR_MEDIUM_MEDIUM_H
 #define SR_MEDIUM_MEDIUM_H
 
@@ -34,9 +34,9 @@ struct sr_medium_segment {
 
 /* Where a walk along a ray has come to; each medium keeps its own state in it. */
 struct sr_medium_walk {
-    sr_vec3 o, d;       // in the medium's grid
-    float t, t_max;     // [m] along the ray in the world, whose direction has unit length
-    sr_spectrum scale;  // [1/m] of the grid's numbers
+    sr_vec3 o, d;      // in the medium's grid
+    float t, t_max;    // [m] along the ray in the world, whose direction has unit length
+    sr_spectrum scale; // [1/m] of the grid's numbers
     float next[3], step[3];
     int32_t cell[3], way[3], end[3];
     const void *grid;
@@ -49,9 +49,12 @@ struct sr_medium_model {
     bool is_uniform; // the same everywhere: one segment, and `at` does not look at p
     /* Checks and derives; grids make their coarse grid of majorants. */
     sr_status (*prepare)(void *self, struct sr_arena *arena, struct sr_error *error);
-    void (*at)(const void *self, sr_vec3 p, const struct sr_wavelengths *w, struct sr_medium_at *out); // p in the world [m]
-    /* Segments of the ray o + t d, 0 <= t <= t_max, in order; where there is none the medium is empty. d of unit length. */
-    void (*begin)(const void *self, sr_vec3 o, sr_vec3 d, float t_max, const struct sr_wavelengths *w, struct sr_medium_walk *walk);
+    void (*at)(const void *self, sr_vec3 p, const struct sr_wavelengths *w,
+               struct sr_medium_at *out); // p in the world [m]
+    /* Segments of the ray o + t d, 0 <= t <= t_max, in order; where there is none the medium is empty. d of unit
+     * length. */
+    void (*begin)(const void *self, sr_vec3 o, sr_vec3 d, float t_max, const struct sr_wavelengths *w,
+                  struct sr_medium_walk *walk);
     bool (*next)(const void *self, struct sr_medium_walk *walk, struct sr_medium_segment *segment);
     bool (*glows)(const void *self); // whether Le can be other than 0
 };
@@ -65,8 +68,8 @@ struct sr_medium_common {
     bool is_absolute;                    // Le is in W m^-2 sr^-1 nm^-1 as it stands
 };
 
-/* Measured liquids and solids by name ("Wholemilk"; pbrt's 47): both coefficients as rgb of sRGB, in 1/mm; sigma_s is the reduced
- * one, sigma_s (1 - g). false: unknown. */
+/* Measured liquids and solids by name ("Wholemilk"; pbrt's 47): both coefficients as rgb of sRGB, in 1/mm; sigma_s is
+ * the reduced one, sigma_s (1 - g). false: unknown. */
 bool sr_medium_preset(const char *name, struct sr_spd *sigma_a, struct sr_spd *sigma_s);
 const char *sr_medium_preset_name(int i); // NULL past the end
 

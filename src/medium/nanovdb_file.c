@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* Reads one grid out of a NanoVDB file (K. Museth, NanoVDB: A GPU-Friendly and Portable VDB Data Structure, 2021) into a sparse grid
- * of our own: what the file says of its own layout is believed only after it has been found to lie within the file, once, here.
+/* Reads one grid out of a NanoVDB file (K. Museth, NanoVDB: A GPU-Friendly and Portable VDB Data Structure, 2021) into
+ * a sparse grid of our own: what the file says of its own layout is believed only after it has been found to lie within
+ * the file, once, here.
  *
  *     segment: magic, version, number of grids, codec;  per grid 176 bytes and its name;  then the grids
- *     grid: header (672 bytes), tree (64), root and its tiles, upper nodes (32^3 children), lower nodes (16^3), leaves (8^3 values)
+ *     grid: header (672 bytes), tree (64), root and its tiles, upper nodes (32^3 children), lower nodes (16^3), leaves
+ * (8^3 values)
  *
- * Layout and reading of values are PNanoVDB.h's, through a buffer that gives 0 outside of the grid. Values are float, or numbers of
- * 1 to 16 bits that each leaf scales (Fp4, Fp8, Fp16, FpN). Codecs: none and zip. Limits: version 32; a span of 2^22 blocks of 128^3. */
+ * Layout and reading of values are PNanoVDB.h's, through a buffer that gives 0 outside of the grid. Values are float,
+ * or numbers of 1 to 16 bits that each leaf scales (Fp4, Fp8, Fp16, FpN). Codecs: none and zip. Limits: version 32; a
+ * span of 2^22 blocks of 128^3. */
 #include "medium/sparse.h"
 
 #include <stdio.h>
@@ -39,7 +42,13 @@ typedef uint32_t pnanovdb_grid_type_t;
 _Static_assert(PNANOVDB_MAJOR_VERSION_NUMBER == 32, "another layout");
 
 #define MAGIC(last) (PNANOVDB_MAGIC_NUMBER - ((uint64_t)'0' << 56) + ((uint64_t)(last) << 56)) // "NanoVDB" and a digit
-enum { SEGMENT_B = 16, META_B = 176, UPPER_CHILDREN = 32 * 32 * 32, LOWER_CHILDREN = 16 * 16 * 16, MOST_BLOCKS = 1 << 22 };
+enum {
+    SEGMENT_B = 16,
+    META_B = 176,
+    UPPER_CHILDREN = 32 * 32 * 32,
+    LOWER_CHILDREN = 16 * 16 * 16,
+    MOST_BLOCKS = 1 << 22
+};
 enum codec { NO_CODEC, ZIP, BLOSC };
 
 struct file {
@@ -188,7 +197,8 @@ static sr_status survey_lower(struct tree *t, uint64_t at)
     const pnanovdb_lower_handle_t lower = {{at}};
     ++t->block_count;
     for (uint32_t word = 0; word < LOWER_CHILDREN / 32; ++word)
-        t->leaf_count += pnanovdb_uint32_countbits(pnanovdb_read_uint32(t->buf, pnanovdb_address_offset(lower.address, PNANOVDB_LOWER_OFF_CHILD_MASK + 4 * word)));
+        t->leaf_count += pnanovdb_uint32_countbits(pnanovdb_read_uint32(
+            t->buf, pnanovdb_address_offset(lower.address, PNANOVDB_LOWER_OFF_CHILD_MASK + 4 * word)));
     // a tree has no node twice, so that all of them fit into its grid
     if (t->block_count > t->buf.size / LAYOUT(t, lower_size) || t->leaf_count > t->buf.size / LAYOUT(t, leaf_size))
         return refuse(t->file, "is damaged: its grid has more nodes than room");
@@ -199,7 +209,8 @@ static sr_status survey_upper(struct tree *t, uint64_t at, const int32_t start[3
 {
     const pnanovdb_upper_handle_t upper = {{at}};
     for (uint32_t n = 0; n < UPPER_CHILDREN; ++n) {
-        const int32_t place[3] = {start[0] + (int32_t)(n >> 10), start[1] + (int32_t)(n >> 5 & 31), start[2] + (int32_t)(n & 31)};
+        const int32_t place[3] = {start[0] + (int32_t)(n >> 10), start[1] + (int32_t)(n >> 5 & 31),
+                                  start[2] + (int32_t)(n & 31)};
         pnanovdb_address_t entry = pnanovdb_upper_get_table_address(t->type, t->buf, upper, n);
         if (pnanovdb_upper_get_child_mask(t->buf, upper, n)) {
             uint64_t lower;
@@ -222,14 +233,17 @@ static int32_t *table_entry(struct tree *t, const int32_t place[3])
     for (int k = 0; k < 3; ++k)
         if (place[k] < g->first[k] || place[k] - g->first[k] >= g->n[k])
             return NULL; // of the background's value
-    return &t->table[((size_t)(place[2] - g->first[2]) * (size_t)g->n[1] + (size_t)(place[1] - g->first[1])) * (size_t)g->n[0] + (size_t)(place[0] - g->first[0])];
+    return &t->table[((size_t)(place[2] - g->first[2]) * (size_t)g->n[1] + (size_t)(place[1] - g->first[1])) *
+                         (size_t)g->n[0] +
+                     (size_t)(place[0] - g->first[0])];
 }
 
 static sr_status read_upper(struct tree *t, uint64_t at, const int32_t start[3])
 {
     const pnanovdb_upper_handle_t upper = {{at}};
     for (uint32_t n = 0; n < UPPER_CHILDREN; ++n) {
-        const int32_t place[3] = {start[0] + (int32_t)(n >> 10), start[1] + (int32_t)(n >> 5 & 31), start[2] + (int32_t)(n & 31)};
+        const int32_t place[3] = {start[0] + (int32_t)(n >> 10), start[1] + (int32_t)(n >> 5 & 31),
+                                  start[2] + (int32_t)(n & 31)};
         int32_t *to = table_entry(t, place);
         if (!to)
             continue;
@@ -250,7 +264,9 @@ static sr_status read_root_constant(struct tree *t, float value, const int32_t s
         return SR_OK;
     if (span) {
         span_add(span, start, 32);
-        return ++t->constant_count <= MOST_BLOCKS / UPPER_CHILDREN ? SR_OK : refuse(t->file, "its grid has more constants of 4096^3 voxels than are supported");
+        return ++t->constant_count <= MOST_BLOCKS / UPPER_CHILDREN
+                   ? SR_OK
+                   : refuse(t->file, "its grid has more constants of 4096^3 voxels than are supported");
     }
     int32_t number;
     if (add_tile(t, value, &number) != SR_OK)
@@ -276,7 +292,8 @@ static sr_status go_through(struct tree *t, struct span *span)
             continue;
         }
         uint64_t upper;
-        if (!find_node(t, t->root.address.byte_offset, child, LAYOUT(t, upper_size), &upper) || ++uppers > t->buf.size / LAYOUT(t, upper_size))
+        if (!find_node(t, t->root.address.byte_offset, child, LAYOUT(t, upper_size), &upper) ||
+            ++uppers > t->buf.size / LAYOUT(t, upper_size))
             return refuse(t->file, "is damaged: the root has a child outside of its grid");
         if ((span ? survey_upper(t, upper, start, span) : read_upper(t, upper, start)) != SR_OK)
             return t->file->error->status;
@@ -299,8 +316,9 @@ static sr_status read_tree(struct tree *t, struct sr_arena *arena)
         g->n[k] = (int32_t)(span.hi[k] - span.lo[k]); // below 2^25
         entries *= (uint64_t)g->n[k];
         if (entries > MOST_BLOCKS)
-            return refuse(t->file, "its grid spans %d x %d x %d blocks of 128 voxels a side: at most %d are supported", (int)(span.hi[0] - span.lo[0]),
-                          (int)(span.hi[1] - span.lo[1]), (int)(span.hi[2] - span.lo[2]), MOST_BLOCKS);
+            return refuse(t->file, "its grid spans %d x %d x %d blocks of 128 voxels a side: at most %d are supported",
+                          (int)(span.hi[0] - span.lo[0]), (int)(span.hi[1] - span.lo[1]),
+                          (int)(span.hi[2] - span.lo[2]), MOST_BLOCKS);
     }
     t->table = sr_arena_alloc(arena, entries * sizeof *t->table);
     t->blocks = sr_arena_alloc(arena, (t->block_count + 1) * sizeof *t->blocks);
@@ -341,7 +359,8 @@ static sr_status read_map(const struct tree *t, pnanovdb_grid_handle_t grid)
 {
     struct sr_sparse *g = t->out;
     const pnanovdb_map_handle_t map = pnanovdb_grid_get_map(t->buf, grid);
-    const pnanovdb_coord_t least = pnanovdb_root_get_bbox_min(t->buf, t->root), most = pnanovdb_root_get_bbox_max(t->buf, t->root);
+    const pnanovdb_coord_t least = pnanovdb_root_get_bbox_min(t->buf, t->root),
+                           most = pnanovdb_root_get_bbox_max(t->buf, t->root);
     bool is_finite = true;
     memcpy(g->least, &least, sizeof g->least);
     memcpy(g->most, &most, sizeof g->most);
@@ -358,7 +377,8 @@ static sr_status read_map(const struct tree *t, pnanovdb_grid_handle_t grid)
         }
         is_finite &= isfinite(g->to_index[i][3]) != 0;
     }
-    return is_finite ? SR_OK : refuse(t->file, "its grid has no place in space: the map of it is infinite or no number");
+    return is_finite ? SR_OK
+                     : refuse(t->file, "its grid has no place in space: the map of it is infinite or no number");
 }
 
 static bool is_supported(uint32_t type)
@@ -384,7 +404,9 @@ static sr_status read_grid(struct tree *t, struct sr_arena *arena)
         return refuse(t->file, "is no volume of fog, but of class %u of NanoVDB", class);
     const pnanovdb_tree_handle_t tree = pnanovdb_grid_get_tree(t->buf, grid);
     uint64_t after_tree = tree.address.byte_offset + PNANOVDB_TREE_SIZE, root = 0;
-    if (!find_node(t, tree.address.byte_offset, (int64_t)pnanovdb_tree_get_node_offset_root(t->buf, tree), LAYOUT(t, root_size), &root) || root < after_tree)
+    if (!find_node(t, tree.address.byte_offset, (int64_t)pnanovdb_tree_get_node_offset_root(t->buf, tree),
+                   LAYOUT(t, root_size), &root) ||
+        root < after_tree)
         return refuse(t->file, "is damaged: its tree has no root");
     t->root.address.byte_offset = root;
     t->tile_count = pnanovdb_root_get_tile_count(t->buf, t->root);
@@ -392,9 +414,11 @@ static sr_status read_grid(struct tree *t, struct sr_arena *arena)
     if (head_B > t->buf.size)
         return refuse(t->file, "is damaged: its root reaches beyond the grid");
     uint32_t expected = (uint32_t)pnanovdb_grid_get_checksum(t->buf, grid); // other versions count other bytes
-    if ((version >> 10 & 2047) == PNANOVDB_MINOR_VERSION_NUMBER && expected != ~0u && root == after_tree && expected != checksum(t->buf.data + 16, head_B - 16))
+    if ((version >> 10 & 2047) == PNANOVDB_MINOR_VERSION_NUMBER && expected != ~0u && root == after_tree &&
+        expected != checksum(t->buf.data + 16, head_B - 16))
         return refuse(t->file, "is damaged: the checksum of its grid is wrong");
-    t->out->background = pnanovdb_read_float(t->buf, pnanovdb_address_offset(t->root.address, LAYOUT(t, root_off_background)));
+    t->out->background =
+        pnanovdb_read_float(t->buf, pnanovdb_address_offset(t->root.address, LAYOUT(t, root_off_background)));
     return read_map(t, grid) == SR_OK ? read_tree(t, arena) : t->file->error->status;
 }
 
@@ -417,7 +441,8 @@ static sr_status read_packed(struct tree *t, const uint8_t *data, const struct m
     uint64_t packed_B = 0;
     if (m->file_B >= sizeof packed_B)
         memcpy(&packed_B, data, sizeof packed_B);
-    if (m->codec != ZIP || m->file_B < sizeof packed_B || packed_B > m->file_B - sizeof packed_B || m->grid_B / 1040 > packed_B) // deflate's most
+    if (m->codec != ZIP || m->file_B < sizeof packed_B || packed_B > m->file_B - sizeof packed_B ||
+        m->grid_B / 1040 > packed_B) // deflate's most
         return refuse(t->file, "is damaged: the size of a packed grid cannot be");
     uint8_t *unpacked = sr_alloc(m->grid_B);
     if (!unpacked)
@@ -440,7 +465,8 @@ static uint32_t number(const uint8_t *data, size_t size)
 }
 
 /* The grids of a segment whose descriptions begin at *at; is_found: the wanted one was read. */
-static sr_status read_segment(struct tree *t, const uint8_t *data, size_t size, size_t *at, const char *name, char names[256], bool *is_found, struct sr_arena *arena)
+static sr_status read_segment(struct tree *t, const uint8_t *data, size_t size, size_t *at, const char *name,
+                              char names[256], bool *is_found, struct sr_arena *arena)
 {
     uint32_t count = number(data + *at + 12, 2);
     size_t meta = *at + SEGMENT_B, body = meta;
@@ -472,8 +498,8 @@ static sr_status read_segment(struct tree *t, const uint8_t *data, size_t size, 
     return SR_OK;
 }
 
-sr_status sr_sparse_parse(const char *path, const uint8_t *data, size_t size, const char *name, bool must, bool no_negative, struct sr_sparse *out,
-                          struct sr_arena *arena, struct sr_error *error)
+sr_status sr_sparse_parse(const char *path, const uint8_t *data, size_t size, const char *name, bool must,
+                          bool no_negative, struct sr_sparse *out, struct sr_arena *arena, struct sr_error *error)
 {
     const struct file file = {path, error};
     char names[256] = "";
@@ -498,7 +524,8 @@ sr_status sr_sparse_parse(const char *path, const uint8_t *data, size_t size, co
     return status;
 }
 
-sr_status sr_sparse_read(const char *path, const char *name, bool must, bool no_negative, struct sr_sparse *out, struct sr_arena *arena, struct sr_error *error)
+sr_status sr_sparse_read(const char *path, const char *name, bool must, bool no_negative, struct sr_sparse *out,
+                         struct sr_arena *arena, struct sr_error *error)
 {
     char *data;
     size_t size;

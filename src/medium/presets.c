@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Absorption and reduced scattering coefficients of things that have been measured, in 1/mm for red, green and blue light.
+/* Absorption and reduced scattering coefficients of things that have been measured, in 1/mm for red, green and blue
+ * light.
  *
- * Of solids and milk: H. W. Jensen, S. Marschner, M. Levoy & P. Hanrahan, A Practical Model for Subsurface Light Transport, 2001.
- * Of liquids and powders in water: S. G. Narasimhan, M. Gupta, C. Donner, R. Ramamoorthi, S. K. Nayar & H. W. Jensen, Acquiring
- * Scattering Properties of Participating Media by Dilution, 2006. Their names as pbrt-v4 has them.
- * Limits: three wide bands, taken as linear sRGB; scattering is sigma_s (1 - g), to be used with g = 0. */
+ * Of solids and milk: H. W. Jensen, S. Marschner, M. Levoy & P. Hanrahan, A Practical Model for Subsurface Light
+ * Transport, 2001. Of liquids and powders in water: S. G. Narasimhan, M. Gupta, C. Donner, R. Ramamoorthi, S. K. Nayar
+ * & H. W. Jensen, Acquiring Scattering Properties of Participating Media by Dilution, 2006. Their names as pbrt-v4 has
+ * them. Limits: three wide bands, taken as linear sRGB; scattering is sigma_s (1 - g), to be used with g = 0. */
 #include "medium/medium.h"
 
 #include <string.h>

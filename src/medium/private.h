@@ -7,11 +7,13 @@
 
 #define SR_MEDIUM_MOST_G 0.9999 // of the mean cosine: beyond that scattering is none
 
-/* Makes Le as bright as a scene says: `scale` times luminance 1 [cd/m^2] as pbrt does, rgb times a white of luminance 1, or what
- * an absolute spectrum says. Kind NONE (dark) where nothing is left of it. */
-sr_status sr_medium_set_emission(struct sr_spd *Le, const struct sr_medium_common *common, float scale, struct sr_error *error);
+/* Makes Le as bright as a scene says: `scale` times luminance 1 [cd/m^2] as pbrt does, rgb times a white of luminance
+ * 1, or what an absolute spectrum says. Kind NONE (dark) where nothing is left of it. */
+sr_status sr_medium_set_emission(struct sr_spd *Le, const struct sr_medium_common *common, float scale,
+                                 struct sr_error *error);
 
-/* What a black body radiates whose spectrum a scene scales by its maximum; of absolute scenes Planck's law. Below 100 K: nothing. */
+/* What a black body radiates whose spectrum a scene scales by its maximum; of absolute scenes Planck's law. Below 100
+ * K: nothing. */
 sr_spectrum sr_medium_blackbody(float temperature, bool is_absolute, const struct sr_wavelengths *w);
 
 /* Multiplies both coefficients by scale; an error where they are not finite then. */
@@ -30,10 +32,12 @@ struct sr_medium_box {
 };
 
 /* Corners may be given in any order. */
-sr_status sr_medium_box_set(struct sr_medium_box *box, const struct sr_transform *medium_to_world, sr_vec3 p0, sr_vec3 p1, const int32_t cells[3],
-                            struct sr_arena *arena, struct sr_error *error);
+sr_status sr_medium_box_set(struct sr_medium_box *box, const struct sr_transform *medium_to_world, sr_vec3 p0,
+                            sr_vec3 p1, const int32_t cells[3], struct sr_arena *arena, struct sr_error *error);
 /* Asks for the largest density between two corners of the cube 0 … 1, for each cell and a little around it. */
-void sr_medium_box_fill(struct sr_medium_box *box, float (*largest)(const void *context, const double lo[3], const double hi[3]), const void *context);
+void sr_medium_box_fill(struct sr_medium_box *box,
+                        float (*largest)(const void *context, const double lo[3], const double hi[3]),
+                        const void *context);
 
 static inline sr_vec3 sr_medium_box_unit(const struct sr_medium_box *box, sr_vec3 p)
 {
@@ -44,15 +48,16 @@ static inline sr_vec3 sr_medium_box_unit(const struct sr_medium_box *box, sr_vec
 }
 
 /* A walk through the cells; scale [1/m] of density 1. Cells without density are passed over. */
-void sr_medium_box_begin(const struct sr_medium_box *box, sr_vec3 o, sr_vec3 d, float t_max, sr_spectrum scale, struct sr_medium_walk *walk);
+void sr_medium_box_begin(const struct sr_medium_box *box, sr_vec3 o, sr_vec3 d, float t_max, sr_spectrum scale,
+                         struct sr_medium_walk *walk);
 bool sr_medium_box_next(struct sr_medium_walk *walk, struct sr_medium_segment *segment);
 
-/* ---- dense grids: samples at the middles of n[0] n[1] n[2] voxels of the cube 0 … 1, x fastest, linear between them, and fading to 0
- * outside, as pbrt's ---- */
+/* ---- dense grids: samples at the middles of n[0] n[1] n[2] voxels of the cube 0 … 1, x fastest, linear between them,
+ * and fading to 0 outside, as pbrt's ---- */
 
 struct sr_medium_voxel { // around a point
     int32_t i[3];
-    float f[3]; // [1] share of the voxel after
+    float f[3];     // [1] share of the voxel after
     bool is_inside; // all eight are in the grid
 };
 
@@ -72,7 +77,8 @@ static inline bool sr_medium_voxel_find(const int32_t n[3], sr_vec3 unit, struct
     return true;
 }
 /* The place of corner c (bits: x, y, z) and its weight; false: outside. */
-static inline bool sr_medium_voxel_corner(const int32_t n[3], const struct sr_medium_voxel *v, int c, size_t *place, float *weight)
+static inline bool sr_medium_voxel_corner(const int32_t n[3], const struct sr_medium_voxel *v, int c, size_t *place,
+                                          float *weight)
 {
     int32_t x = v->i[0] + (c & 1), y = v->i[1] + (c >> 1 & 1), z = v->i[2] + (c >> 2);
     *weight = (c & 1 ? v->f[0] : 1 - v->f[0]) * (c & 2 ? v->f[1] : 1 - v->f[1]) * (c & 4 ? v->f[2] : 1 - v->f[2]);
@@ -81,11 +87,14 @@ static inline bool sr_medium_voxel_corner(const int32_t n[3], const struct sr_me
 }
 float sr_medium_grid_at(const float *values, const int32_t n[3], sr_vec3 unit);
 /* The voxels that count between two corners of the cube: first … last along each axis. */
-void sr_medium_grid_range(const int32_t n[3], const double lo[3], const double hi[3], int32_t first[3], int32_t last[3]);
+void sr_medium_grid_range(const int32_t n[3], const double lo[3], const double hi[3], int32_t first[3],
+                          int32_t last[3]);
 /* n[0] n[1] n[2] values of `what` are given, finite and not below `least`. */
-sr_status sr_medium_grid_check(const char *what, struct sr_slice values, uint32_t each, const int32_t n[3], float least, struct sr_error *error);
+sr_status sr_medium_grid_check(const char *what, struct sr_slice values, uint32_t each, const int32_t n[3], float least,
+                               struct sr_error *error);
 /* How many cells of majorants serve a box of n voxels best whose largest sigma_t is that [1/m]. */
-void sr_medium_grid_cells(const int32_t n[3], float sigma_t, const struct sr_transform *medium_to_world, sr_vec3 p0, sr_vec3 p1, int32_t cells[3]);
+void sr_medium_grid_cells(const int32_t n[3], float sigma_t, const struct sr_transform *medium_to_world, sr_vec3 p0,
+                          sr_vec3 p1, int32_t cells[3]);
 float sr_medium_grid_largest(struct sr_slice values); // of float, none below 0
 
 #endif

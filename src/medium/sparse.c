@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* Looking into a sparse grid (sparse.h): three steps down, one for all eight neighbours where they share a leaf. The layout is that of
- * OpenVDB's leaves and lower nodes (K. Museth, VDB: High-Resolution Sparse Volumes with Dynamic Topology, 2013), under one table.
- * Files hold values also where nothing is active, beyond the box of what is: those are not meant. */
+/* Looking into a sparse grid (sparse.h): three steps down, one for all eight neighbours where they share a leaf. The
+ * layout is that of OpenVDB's leaves and lower nodes (K. Museth, VDB: High-Resolution Sparse Volumes with Dynamic
+ * Topology, 2013), under one table. Files hold values also where nothing is active, beyond the box of what is: those
+ * are not meant. */
 #include "medium/sparse.h"
 
 /* The leaf around (i, j, k), or NULL, and a constant. */
 static inline const float *leaf_at(const struct sr_sparse *g, int32_t i, int32_t j, int32_t k, float *constant)
 {
-    uint32_t x = (uint32_t)(i >> 7) - (uint32_t)g->first[0], y = (uint32_t)(j >> 7) - (uint32_t)g->first[1], z = (uint32_t)(k >> 7) - (uint32_t)g->first[2];
+    uint32_t x = (uint32_t)(i >> 7) - (uint32_t)g->first[0], y = (uint32_t)(j >> 7) - (uint32_t)g->first[1],
+             z = (uint32_t)(k >> 7) - (uint32_t)g->first[2];
     *constant = g->background;
     if (x >= (uint32_t)g->n[0] || y >= (uint32_t)g->n[1] || z >= (uint32_t)g->n[2])
         return NULL;
@@ -21,7 +23,8 @@ static inline const float *leaf_at(const struct sr_sparse *g, int32_t i, int32_t
 
 static inline bool is_in_box(const struct sr_sparse *g, int32_t i, int32_t j, int32_t k)
 {
-    return i >= g->least[0] && i <= g->most[0] && j >= g->least[1] && j <= g->most[1] && k >= g->least[2] && k <= g->most[2];
+    return i >= g->least[0] && i <= g->most[0] && j >= g->least[1] && j <= g->most[1] && k >= g->least[2] &&
+           k <= g->most[2];
 }
 
 static float value_at(const struct sr_sparse *g, int32_t i, int32_t j, int32_t k)
@@ -51,11 +54,13 @@ float sr_sparse_at(const struct sr_sparse *g, sr_vec3 index)
         for (int c = 0; c < 8; ++c)
             v[c] = value_at(g, i + (c & 1), j + (c >> 1 & 1), k + (c >> 2));
     float fx = index.x - x, fy = index.y - y, fz = index.z - z;
-    return sr_lerp(fz, sr_lerp(fy, sr_lerp(fx, v[0], v[1]), sr_lerp(fx, v[2], v[3])), sr_lerp(fy, sr_lerp(fx, v[4], v[5]), sr_lerp(fx, v[6], v[7])));
+    return sr_lerp(fz, sr_lerp(fy, sr_lerp(fx, v[0], v[1]), sr_lerp(fx, v[2], v[3])),
+                   sr_lerp(fy, sr_lerp(fx, v[4], v[5]), sr_lerp(fx, v[6], v[7])));
 }
 
 /* first … last of a side: what of it lies in the part of 2^shift numbers that begins at `start`. */
-static bool overlap(const int64_t first[3], const int64_t last[3], const int64_t start[3], int shift, int64_t from[3], int64_t to[3])
+static bool overlap(const int64_t first[3], const int64_t last[3], const int64_t start[3], int shift, int64_t from[3],
+                    int64_t to[3])
 {
     bool is_any = true;
     for (int k = 0; k < 3; ++k) {
@@ -77,7 +82,8 @@ static float largest_of_leaf(const float *values, const int64_t from[3], const i
     return largest;
 }
 
-static float largest_of_block(const struct sr_sparse *g, const struct sr_sparse_block *block, const int64_t start[3], const int64_t first[3], const int64_t last[3])
+static float largest_of_block(const struct sr_sparse *g, const struct sr_sparse_block *block, const int64_t start[3],
+                              const int64_t first[3], const int64_t last[3])
 {
     float largest = -INFINITY;
     int64_t from[3], to[3];
@@ -101,7 +107,8 @@ float sr_sparse_largest(const struct sr_sparse *g, const double lo[3], const dou
     bool is_in_box = true, is_in_table = true, is_any = true;
     for (int k = 0; k < 3; ++k) {
         const double far = 0x1p40;
-        int64_t lower = (int64_t)fmin(fmax(floor(lo[k]), -far), far), upper = (int64_t)fmin(fmax(ceil(hi[k]), -far), far);
+        int64_t lower = (int64_t)fmin(fmax(floor(lo[k]), -far), far),
+                upper = (int64_t)fmin(fmax(ceil(hi[k]), -far), far);
         int64_t table_end = (int64_t)g->first[k] + g->n[k] - 1;
         first[k] = lower > g->least[k] ? lower : g->least[k];
         last[k] = upper < g->most[k] ? upper : g->most[k];
@@ -119,9 +126,11 @@ float sr_sparse_largest(const struct sr_sparse *g, const double lo[3], const dou
     for (int64_t z = from[2]; z <= to[2]; ++z)
         for (int64_t y = from[1]; y <= to[1]; ++y)
             for (int64_t x = from[0]; x <= to[0]; ++x) {
-                int32_t block = g->table[((z - g->first[2]) * g->n[1] + (y - g->first[1])) * g->n[0] + (x - g->first[0])];
+                int32_t block =
+                    g->table[((z - g->first[2]) * g->n[1] + (y - g->first[1])) * g->n[0] + (x - g->first[0])];
                 const int64_t start[3] = {x * 128, y * 128, z * 128};
-                largest = sr_max(block < 0 ? g->tiles[~block] : largest_of_block(g, &g->blocks[block], start, first, last), largest);
+                largest = sr_max(
+                    block < 0 ? g->tiles[~block] : largest_of_block(g, &g->blocks[block], start, first, last), largest);
             }
     return largest;
 }

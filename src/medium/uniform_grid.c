@@ -2,11 +2,13 @@
 /* Smoke and fire as a simulation leaves them: a density on a regular grid in a box.
  *
  *     sigma_a = scale d(p) sigma_a(lambda),   sigma_s likewise     [1/m]
- *     Le = Lescale(p) Le(lambda)   or   Lescale(p) B(lambda, (T(p) - offset) factor)      [cd/m^2 times the share of its wavelength]
+ *     Le = Lescale(p) Le(lambda)   or   Lescale(p) B(lambda, (T(p) - offset) factor)      [cd/m^2 times the share of
+ * its wavelength]
  *
- * B is Planck's law scaled to a maximum of 1; colder than 100 K it is dark. d, T and Lescale are linear between the voxels
- * (grid.c). Where no Lescale is given pbrt-v4 takes a grid of one voxel, which fades from the middle of the box to an eighth at
- * its corners; scene files get that. One value of Lescale for many voxels is a factor that does not fade. */
+ * B is Planck's law scaled to a maximum of 1; colder than 100 K it is dark. d, T and Lescale are linear between the
+ * voxels (grid.c). Where no Lescale is given pbrt-v4 takes a grid of one voxel, which fades from the middle of the box
+ * to an eighth at its corners; scene files get that. One value of Lescale for many voxels is a factor that does not
+ * fade. */
 #include "medium/private.h"
 
 struct uniform_grid {
@@ -26,22 +28,32 @@ struct uniform_grid {
 };
 
 static const struct sr_param params[] = {
-    {SR_PARAM_FLOATS, "density", "1", 0, INFINITY, 0, offsetof(struct uniform_grid, density), "of each voxel, x fastest"},
+    {SR_PARAM_FLOATS, "density", "1", 0, INFINITY, 0, offsetof(struct uniform_grid, density),
+     "of each voxel, x fastest"},
     {SR_PARAM_INT, "nx", "1", 1, INT32_MAX, 1, offsetof(struct uniform_grid, nx), "voxels along x"},
     {SR_PARAM_INT, "ny", "1", 1, INT32_MAX, 1, offsetof(struct uniform_grid, ny), "voxels along y"},
     {SR_PARAM_INT, "nz", "1", 1, INT32_MAX, 1, offsetof(struct uniform_grid, nz), "voxels along z"},
     {SR_PARAM_POINT3, "p0", "m", -INFINITY, INFINITY, 0, offsetof(struct uniform_grid, p0), "corner of the box"},
     {SR_PARAM_POINT3, "p1", "m", -INFINITY, INFINITY, 1, offsetof(struct uniform_grid, p1), "opposite corner"},
-    {SR_PARAM_UNBOUNDED, "sigma_a", "1/m", 0, INFINITY, 1, offsetof(struct uniform_grid, sigma_a), "absorption coefficient where the density is 1"},
-    {SR_PARAM_UNBOUNDED, "sigma_s", "1/m", 0, INFINITY, 1, offsetof(struct uniform_grid, sigma_s), "scattering coefficient where the density is 1"},
+    {SR_PARAM_UNBOUNDED, "sigma_a", "1/m", 0, INFINITY, 1, offsetof(struct uniform_grid, sigma_a),
+     "absorption coefficient where the density is 1"},
+    {SR_PARAM_UNBOUNDED, "sigma_s", "1/m", 0, INFINITY, 1, offsetof(struct uniform_grid, sigma_s),
+     "scattering coefficient where the density is 1"},
     {SR_PARAM_FLOAT, "scale", "1", 0, INFINITY, 1, offsetof(struct uniform_grid, scale), "factor of both"},
-    {SR_PARAM_FLOAT, "g", "1", -SR_MEDIUM_MOST_G, SR_MEDIUM_MOST_G, 0, offsetof(struct uniform_grid, g), "mean cosine of scattering, Henyey & Greenstein"},
-    {SR_PARAM_ILLUMINANT, "Le", "cd/m^2", 0, INFINITY, NAN, offsetof(struct uniform_grid, Le), "radiance where it is thick: it emits sigma_a Le on each metre"},
-    {SR_PARAM_FLOATS, "Lescale", "1", 0, INFINITY, 0, offsetof(struct uniform_grid, Lescale), "factor of the emission of each voxel, or one for all"},
-    {SR_PARAM_FLOATS, "temperature", "K", -INFINITY, INFINITY, 0, offsetof(struct uniform_grid, temperature), "of each voxel, which glows as a black body"},
-    {SR_PARAM_FLOAT, "temperatureoffset", "K", -INFINITY, INFINITY, NAN, offsetof(struct uniform_grid, temperatureoffset), "subtracted from the temperatures"},
-    {SR_PARAM_FLOAT, "temperaturecutoff", "K", -INFINITY, INFINITY, 0, offsetof(struct uniform_grid, temperaturecutoff), "older name of temperatureoffset"},
-    {SR_PARAM_FLOAT, "temperaturescale", "1", 0, INFINITY, 1, offsetof(struct uniform_grid, temperaturescale), "factor of the temperatures, after that"},
+    {SR_PARAM_FLOAT, "g", "1", -SR_MEDIUM_MOST_G, SR_MEDIUM_MOST_G, 0, offsetof(struct uniform_grid, g),
+     "mean cosine of scattering, Henyey & Greenstein"},
+    {SR_PARAM_ILLUMINANT, "Le", "cd/m^2", 0, INFINITY, NAN, offsetof(struct uniform_grid, Le),
+     "radiance where it is thick: it emits sigma_a Le on each metre"},
+    {SR_PARAM_FLOATS, "Lescale", "1", 0, INFINITY, 0, offsetof(struct uniform_grid, Lescale),
+     "factor of the emission of each voxel, or one for all"},
+    {SR_PARAM_FLOATS, "temperature", "K", -INFINITY, INFINITY, 0, offsetof(struct uniform_grid, temperature),
+     "of each voxel, which glows as a black body"},
+    {SR_PARAM_FLOAT, "temperatureoffset", "K", -INFINITY, INFINITY, NAN,
+     offsetof(struct uniform_grid, temperatureoffset), "subtracted from the temperatures"},
+    {SR_PARAM_FLOAT, "temperaturecutoff", "K", -INFINITY, INFINITY, 0, offsetof(struct uniform_grid, temperaturecutoff),
+     "older name of temperatureoffset"},
+    {SR_PARAM_FLOAT, "temperaturescale", "1", 0, INFINITY, 1, offsetof(struct uniform_grid, temperaturescale),
+     "factor of the temperatures, after that"},
     {.name = NULL},
 };
 
@@ -78,7 +90,8 @@ static sr_status prepare_emission(struct uniform_grid *m, struct sr_error *error
         m->Lescale_constant = *(const float *)m->Lescale.data;
         m->Lescale_values = NULL;
         if (!(m->Lescale_constant >= 0) || !isfinite(m->Lescale_constant))
-            return sr_fail(error, SR_ERROR_INPUT, "\"Lescale\" is %g: expected finite values of 0 or more", (double)m->Lescale_constant);
+            return sr_fail(error, SR_ERROR_INPUT, "\"Lescale\" is %g: expected finite values of 0 or more",
+                           (double)m->Lescale_constant);
     } else if (m->Lescale.count) {
         if (sr_medium_grid_check("Lescale", m->Lescale, 1, m->n, 0, error))
             return error->status;
@@ -95,8 +108,8 @@ static sr_status prepare(void *self, struct sr_arena *arena, struct sr_error *er
         m->n[k] = k == 0 ? m->nx : k == 1 ? m->ny : m->nz;
     if (!m->density.count)
         return sr_fail(error, SR_ERROR_INPUT, "expected a parameter \"float density\"");
-    if (sr_medium_grid_check("density", m->density, 1, m->n, 0, error) || sr_medium_scale(&m->sigma_a, &m->sigma_s, m->scale, error) ||
-        prepare_emission(m, error))
+    if (sr_medium_grid_check("density", m->density, 1, m->n, 0, error) ||
+        sr_medium_scale(&m->sigma_a, &m->sigma_s, m->scale, error) || prepare_emission(m, error))
         return error->status;
     float sigma_t = sr_medium_grid_largest(m->density) * (sr_spd_max(&m->sigma_a) + sr_spd_max(&m->sigma_s));
     sr_medium_grid_cells(m->n, sigma_t, &m->common.medium_to_world, m->p0, m->p1, cells);
@@ -128,7 +141,8 @@ static void at(const void *self, sr_vec3 p, const struct sr_wavelengths *w, stru
     out->g = m->g;
 }
 
-static void begin(const void *self, sr_vec3 o, sr_vec3 d, float t_max, const struct sr_wavelengths *w, struct sr_medium_walk *walk)
+static void begin(const void *self, sr_vec3 o, sr_vec3 d, float t_max, const struct sr_wavelengths *w,
+                  struct sr_medium_walk *walk)
 {
     const struct uniform_grid *m = self;
     sr_medium_box_begin(&m->box, o, d, t_max, sr_spd_along(&m->sigma_a, w) + sr_spd_along(&m->sigma_s, w), walk);
@@ -147,6 +161,12 @@ static bool glows(const void *self)
 }
 
 const struct sr_medium_model sr_medium_uniform_grid = {
-    .name = "uniformgrid", .params = params, .size = sizeof(struct uniform_grid), .prepare = prepare,
-    .at = at, .begin = begin, .next = next, .glows = glows,
+    .name = "uniformgrid",
+    .params = params,
+    .size = sizeof(struct uniform_grid),
+    .prepare = prepare,
+    .at = at,
+    .begin = begin,
+    .next = next,
+    .glows = glows,
 };

@@ -5,7 +5,8 @@
  *     CCT = argmin over T of |(u, v) - (u, v)_Planck(T)|,   v = 2/3 v'
  *     Duv = that least distance, positive above the locus                             ANSI C78.377
  *
- * The locus is computed by 1 nm steps, not tabulated; the minimum is found in 1/T, in which the locus is run through evenly. */
+ * The locus is computed by 1 nm steps, not tabulated; the minimum is found in 1/T, in which the locus is run through
+ * evenly. */
 #include "meter/meter.h"
 
 const char *const sr_colour_names[SR_COLOUR_COUNT] = {"X", "Y", "Z", "x", "y", "u'", "v'", "CCT", "Duv"};

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Flux onto a shape of the scene, or through a surface that is the meter's own and that light passes as if it were not there.
+/* Flux onto a shape of the scene, or through a surface that is the meter's own and that light passes as if it were not
+ * there.
  *
  *     Phi = INTEGRAL over the area, INTEGRAL over the side's hemisphere of L |cos(theta)| dw dA       [lm], [W]
  *
- * "front" counts what arrives on the side of the normal (of a shape: at its outside), "back" the other, "both" the sum, "net"
- * front minus back: what goes through against the normal, of a closed surface what its inside absorbs less what it emits. */
+ * "front" counts what arrives on the side of the normal (of a shape: at its outside), "back" the other, "both" the sum,
+ * "net" front minus back: what goes through against the normal, of a closed surface what its inside absorbs less what
+ * it emits. */
 #include "meter/private.h"
 
 enum { FRONT, BACK, BOTH, NET };
@@ -35,7 +37,8 @@ static bool place(const void *self, sr_vec2 u, struct sr_meter_place *out)
     if (!(density > 0))
         return false;
     meter_place_on(&x, 1 / density, out);
-    if (m->side == BACK || m->side == BOTH || m->side == NET) // lights behind the surface count: their choice must not look at it
+    if (m->side == BACK || m->side == BOTH ||
+        m->side == NET) // lights behind the surface count: their choice must not look at it
         out->x.ns = (sr_vec3){0, 0, 0};
     return true;
 }

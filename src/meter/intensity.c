@@ -3,18 +3,18 @@
  *
  *     I(C, gamma) = flux into the cell / solid angle of the cell                  [cd], [W/sr]
  *
- * Cells are centred on the planes C = 0, dC, … and on gamma = 0, dgamma, …, 180 deg; at the two poles one cell is what all planes
- * share. gamma is counted from the axis (given none: -z, down), C from `facing` (+x) toward axis x facing turned around, that
- * is, seen against the axis, against the clock: with the axis -z, C 90 is +y, as IES and EULUMDAT files have it. CIE 121-1996.
- * Limits: I is the mean over a cell, which rounds off peaks narrower than it. */
+ * Cells are centred on the planes C = 0, dC, … and on gamma = 0, dgamma, …, 180 deg; at the two poles one cell is what
+ * all planes share. gamma is counted from the axis (given none: -z, down), C from `facing` (+x) toward axis x facing
+ * turned around, that is, seen against the axis, against the clock: with the axis -z, C 90 is +y, as IES and EULUMDAT
+ * files have it. CIE 121-1996. Limits: I is the mean over a cell, which rounds off peaks narrower than it. */
 #include "meter/private.h"
 
 struct intensity {
     struct sr_meter_common common;
-    sr_vec3 axis, facing;      // [1]
-    float c_step, gamma_step;  // [deg]
+    sr_vec3 axis, facing;     // [1]
+    float c_step, gamma_step; // [deg]
     // derived
-    struct sr_frame frame;     // x: C 0, y: C 90, z: against gamma 0
+    struct sr_frame frame; // x: C 0, y: C 90, z: against gamma 0
     uint32_t planes, rows;
 };
 
@@ -45,7 +45,8 @@ static sr_status prepare(void *self, const struct sr_transform *t, struct sr_are
     if (sr_length(sr_cross(axis, facing)) < 1e-3f)
         return sr_fail(error, SR_ERROR_INPUT, "\"facing\" is along the axis: expected a direction square to it");
     if (!divides(360, m->c_step, &m->planes) || !divides(180, m->gamma_step, &m->rows))
-        return sr_fail(error, SR_ERROR_INPUT, "\"cstep\" %g must divide 360 and \"gammastep\" %g must divide 180", (double)m->c_step, (double)m->gamma_step);
+        return sr_fail(error, SR_ERROR_INPUT, "\"cstep\" %g must divide 360 and \"gammastep\" %g must divide 180",
+                       (double)m->c_step, (double)m->gamma_step);
     m->rows += 1;
     m->frame = sr_frame_from_zx(sr_neg(axis), facing);
     return SR_OK;
@@ -64,7 +65,8 @@ static uint32_t far(const void *self, sr_vec3 w)
     sr_vec3 d = sr_to_local(&m->frame, w);
     double gamma = atan2((double)sqrtf(d.x * d.x + d.y * d.y), -(double)d.z) * (180 / 3.14159265358979323846);
     double c = (double)sr_angle_of(d.y, d.x) * (180 / 3.14159265358979323846);
-    uint32_t row = (uint32_t)(gamma / (double)m->gamma_step + 0.5), plane = (uint32_t)(c / (double)m->c_step + 0.5) % m->planes;
+    uint32_t row = (uint32_t)(gamma / (double)m->gamma_step + 0.5),
+             plane = (uint32_t)(c / (double)m->c_step + 0.5) % m->planes;
     row = row < m->rows ? row : m->rows - 1;
     return row == 0 || row == m->rows - 1 ? row * m->planes : row * m->planes + plane;
 }
@@ -76,7 +78,8 @@ static double cell(const void *self, uint32_t index, double *c_deg, double *gamm
     const double degree = 3.14159265358979323846 / 180, step = (double)m->gamma_step;
     *gamma_deg = row * step;
     *c_deg = index % m->planes * (double)m->c_step;
-    double ring = 2 * 3.14159265358979323846 * (cos(fmax(0, *gamma_deg - step / 2) * degree) - cos(fmin(180, *gamma_deg + step / 2) * degree));
+    double ring = 2 * 3.14159265358979323846 *
+                  (cos(fmax(0, *gamma_deg - step / 2) * degree) - cos(fmin(180, *gamma_deg + step / 2) * degree));
     return row == 0 || row == m->rows - 1 ? ring : ring / m->planes;
 }
 
@@ -102,7 +105,20 @@ static double extent(const void *self)
 }
 
 const struct sr_meter_model meter_intensity = {
-    .name = "intensity", .what = "flux that leaves the scene, and its intensity distribution", .law = "∫ I dω, I = dΦ/dω in the far field", .suffix = "",
-    .kind = SR_KIND_FLUX, .params = params, .size = sizeof(struct intensity), .prepare = prepare, .place = place, .response = response, .sample = sample,
-    .pdf = response, .extent = extent, .raster = raster, .far = far, .cell = cell,
+    .name = "intensity",
+    .what = "flux that leaves the scene, and its intensity distribution",
+    .law = "∫ I dω, I = dΦ/dω in the far field",
+    .suffix = "",
+    .kind = SR_KIND_FLUX,
+    .params = params,
+    .size = sizeof(struct intensity),
+    .prepare = prepare,
+    .place = place,
+    .response = response,
+    .sample = sample,
+    .pdf = response,
+    .extent = extent,
+    .raster = raster,
+    .far = far,
+    .cell = cell,
 };

@@ -23,7 +23,8 @@ static sr_status prepare(void *self, const struct sr_transform *t, struct sr_are
 {
     struct map *m = self;
     if (m->surface.shape != METER_RECTANGLE)
-        return sr_fail(error, SR_ERROR_INPUT, "a map is made of a rectangle or of a named shape: expected \"string shape\" \"rectangle\"");
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "a map is made of a rectangle or of a named shape: expected \"string shape\" \"rectangle\"");
     return meter_surface_prepare(&m->common, &m->surface, t, arena, error);
 }
 
@@ -32,7 +33,8 @@ static bool place_in(const void *self, uint32_t cell, sr_vec2 u, struct sr_meter
     const struct map *m = self;
     uint32_t nx = (uint32_t)m->nx, i = cell % nx, j = cell / nx;
     struct sr_point x;
-    if (!(m->common.surface.draw(m->common.surface.self, (sr_vec2){((float)i + u.x) / (float)nx, ((float)j + u.y) / (float)m->ny}, &x) > 0))
+    if (!(m->common.surface.draw(m->common.surface.self,
+                                 (sr_vec2){((float)i + u.x) / (float)nx, ((float)j + u.y) / (float)m->ny}, &x) > 0))
         return false;
     meter_place_on(&x, 1, out); // a mean over the cell
     return true;

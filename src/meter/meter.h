@@ -3,8 +3,9 @@
  *
  *     reading = INTEGRAL over the meter's area, over all directions, of  response(x, wi) L(x, wi)  dwi dA(x)
  *
- * wi points from the meter toward where light comes from. A meter is two words, {model, self}, one file for each group of
- * models; a detector (in struct sr_meter_common, which every self begins with) says what is made of the wavelengths. */
+ * wi points from the meter toward where light comes from. A meter is two words, {model, self}, one file for each group
+ * of models; a detector (in struct sr_meter_common, which every self begins with) says what is made of the wavelengths.
+ */
 #ifndef SR_METER_METER_H
 #define SR_METER_METER_H
 
@@ -31,12 +32,12 @@ enum sr_meter_bandpass { SR_BAND_TRIANGULAR, SR_BAND_RECTANGULAR };
 
 /* How every self begins; set by the rows of sr_meter_common_params. */
 struct sr_meter_common {
-    const char *name;             // NULL: none given
-    const char *surface_name;     // of a shape, or NULL
-    int32_t reading;              // enum sr_meter_reading
-    int32_t bandpass;             // enum sr_meter_bandpass
-    struct sr_slice lambda;       // [nm] first, step, last
-    float fwhm;                   // [nm] width of the bandpass at half its height; NaN: the step
+    const char *name;                // NULL: none given
+    const char *surface_name;        // of a shape, or NULL
+    int32_t reading;                 // enum sr_meter_reading
+    int32_t bandpass;                // enum sr_meter_bandpass
+    struct sr_slice lambda;          // [nm] first, step, last
+    float fwhm;                      // [nm] width of the bandpass at half its height; NaN: the step
     struct sr_meter_surface surface; // by whom it prepares: that of the name, or the meter's own
 };
 extern const struct sr_param sr_meter_common_params[];
@@ -51,19 +52,22 @@ struct sr_meter_model {
     size_t size;
     bool wants_surface; // looks at common.surface_name
     /* meter_to_world: the transform in force. */
-    sr_status (*prepare)(void *self, const struct sr_transform *meter_to_world, struct sr_arena *arena, struct sr_error *error);
+    sr_status (*prepare)(void *self, const struct sr_transform *meter_to_world, struct sr_arena *arena,
+                         struct sr_error *error);
     bool (*place)(const void *self, sr_vec2 u, struct sr_meter_place *place);
-    float (*response)(const void *self, sr_vec3 wi);            // wi local, unit length; may be negative (net flux)
-    float (*sample)(const void *self, sr_u4 u, sr_vec3 *wi);    // returns its pdf [1/sr], of rays 1; 0: none
-    float (*pdf)(const void *self, sr_vec3 wi);                 // [1/sr]
-    bool (*is_ray)(const void *self);   // takes in one direction alone: no light can be aimed at from it. NULL: does not
+    float (*response)(const void *self, sr_vec3 wi);         // wi local, unit length; may be negative (net flux)
+    float (*sample)(const void *self, sr_u4 u, sr_vec3 *wi); // returns its pdf [1/sr], of rays 1; 0: none
+    float (*pdf)(const void *self, sr_vec3 wi);              // [1/sr]
+    bool (*is_ray)(const void *self); // takes in one direction alone: no light can be aimed at from it. NULL: does not
     double (*extent)(const void *self); // INTEGRAL |response| dwi dA: what a radiance of 1 from everywhere reads
     /* Maps: how many cells; place draws within the cell. NULL: one reading. */
     void (*raster)(const void *self, uint32_t *width, uint32_t *height);
     bool (*place_in)(const void *self, uint32_t cell, sr_vec2 u, struct sr_meter_place *place);
-    uint32_t (*cell_of)(const void *self, const struct sr_meter_place *place); // on a named shape: by u and v; UINT32_MAX: none
-    /* Meters of the far field: they count light that leaves the scene, wherever from, by its direction w. They have no place; the
-     * reading is the flux. far: the cell of w; cell: the middle of a cell [deg] and its solid angle [sr]. NULL: others. */
+    uint32_t (*cell_of)(const void *self,
+                        const struct sr_meter_place *place); // on a named shape: by u and v; UINT32_MAX: none
+    /* Meters of the far field: they count light that leaves the scene, wherever from, by its direction w. They have no
+     * place; the reading is the flux. far: the cell of w; cell: the middle of a cell [deg] and its solid angle [sr].
+     * NULL: others. */
     uint32_t (*far)(const void *self, sr_vec3 w);
     double (*cell)(const void *self, uint32_t cell, double *c_deg, double *gamma_deg);
 };
@@ -91,17 +95,29 @@ struct sr_spectrometer {
     enum sr_meter_bandpass bandpass;
 };
 /* From LO, STEP, HI; fwhm NaN: the step. Refuses what is no ascending list of at most 4096 bins. */
-sr_status sr_spectrometer_prepare(double lo, double step, double hi, double fwhm, enum sr_meter_bandpass bandpass, struct sr_spectrometer *s,
-                                  struct sr_error *error);
+sr_status sr_spectrometer_prepare(double lo, double step, double hi, double fwhm, enum sr_meter_bandpass bandpass,
+                                  struct sr_spectrometer *s, struct sr_error *error);
 /* Adds an estimate from a path's wavelengths: X is 683 times the spectral quantity, as everywhere on paths. */
 void sr_spectrometer_add(const struct sr_spectrometer *s, sr_spectrum X, const struct sr_wavelengths *w, double *bins);
 
 /* ---- the colorimeter ---- */
 
-enum { SR_COLOUR_X, SR_COLOUR_Y, SR_COLOUR_Z, SR_COLOUR_x, SR_COLOUR_y, SR_COLOUR_u, SR_COLOUR_v, SR_COLOUR_CCT, SR_COLOUR_DUV, SR_COLOUR_COUNT };
+enum {
+    SR_COLOUR_X,
+    SR_COLOUR_Y,
+    SR_COLOUR_Z,
+    SR_COLOUR_x,
+    SR_COLOUR_y,
+    SR_COLOUR_u,
+    SR_COLOUR_v,
+    SR_COLOUR_CCT,
+    SR_COLOUR_DUV,
+    SR_COLOUR_COUNT
+};
 extern const char *const sr_colour_names[SR_COLOUR_COUNT]; // "X" … "CCT", "Duv"
-/* XYZ given, the rest computed: x y; u' v' of 1976; correlated colour temperature [K] and the signed distance Duv from Planck's
- * locus in the diagram of 1960. NaN: black; CCT also where Duv is beyond 0.05, for which it has no meaning (CIE 015:2018). */
+/* XYZ given, the rest computed: x y; u' v' of 1976; correlated colour temperature [K] and the signed distance Duv from
+ * Planck's locus in the diagram of 1960. NaN: black; CCT also where Duv is beyond 0.05, for which it has no meaning
+ * (CIE 015:2018). */
 void sr_colour_of(double values[SR_COLOUR_COUNT]);
 
 #endif

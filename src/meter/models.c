@@ -5,8 +5,17 @@
 #include <string.h>
 
 const struct sr_meter_model *const sr_meter_models[] = {
-    &meter_irradiance, &meter_cylindrical, &meter_semicylindrical, &meter_hemispherical, &meter_spherical,
-    &meter_fluence,    &meter_radiance,    &meter_flux,            &meter_irradiancemap, &meter_intensity, NULL,
+    &meter_irradiance,
+    &meter_cylindrical,
+    &meter_semicylindrical,
+    &meter_hemispherical,
+    &meter_spherical,
+    &meter_fluence,
+    &meter_radiance,
+    &meter_flux,
+    &meter_irradiancemap,
+    &meter_intensity,
+    NULL,
 };
 
 const struct sr_meter_model *sr_meter_model_find(const char *name)
@@ -23,7 +32,8 @@ const struct sr_param sr_meter_common_params[] = {
     {SR_PARAM_STRING, "surface", "1", 0, 0, NAN, MEMBER(surface_name), "the name of a shape, for meters with an area"},
     {SR_PARAM_ENUM, "reading", "1", 0, 0, SR_READ_VALUE, MEMBER(reading), "value|spectrum|colour"},
     {SR_PARAM_FLOATS, "lambda", "nm", 0, INFINITY, NAN, MEMBER(lambda), "of a spectrum: first, step, last"},
-    {SR_PARAM_FLOAT, "fwhm", "nm", 1e-3, 1000, NAN, MEMBER(fwhm), "width of the bandpass at half its height; none: the step"},
+    {SR_PARAM_FLOAT, "fwhm", "nm", 1e-3, 1000, NAN, MEMBER(fwhm),
+     "width of the bandpass at half its height; none: the step"},
     {SR_PARAM_ENUM, "bandpass", "1", 0, 0, SR_BAND_TRIANGULAR, MEMBER(bandpass), "triangular|rectangular"},
     {.name = NULL},
 };
@@ -37,7 +47,8 @@ sr_status meter_direction(const char *name, sr_vec3 *v, struct sr_error *error)
 {
     float length = sr_length(*v);
     if (!(length > 0) || !isfinite(length))
-        return sr_fail(error, SR_ERROR_INPUT, "\"%s\" has no direction: expected three numbers that are not all 0", name);
+        return sr_fail(error, SR_ERROR_INPUT, "\"%s\" has no direction: expected three numbers that are not all 0",
+                       name);
     *v = sr_scale(1 / length, *v);
     return SR_OK;
 }

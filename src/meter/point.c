@@ -2,27 +2,31 @@
 /* Meters at a point: a surface element and the small bodies of lighting practice.
  *
  *     irradiance       E     = INTEGRAL L cos(theta) dw               over the hemisphere of the normal
- *     cylindrical      E_cyl = 1/pi INTEGRAL L sin(theta) dw          theta from the cylinder's axis, over all directions
- *     semicylindrical  E_sc  = 1/pi INTEGRAL L sin(theta) (1 + cos(phi)) dw    phi from where the half cylinder faces
- *     hemispherical    E_hs  = 1/4 INTEGRAL L (1 + cos(theta)) dw     theta from the normal of its base
- *     spherical        E_sph = 1/4 INTEGRAL L dw                      mean over the whole surface of a small sphere
- *     fluence rate     E_o   = INTEGRAL L dw                          the same by the area of its great circle
+ *     cylindrical      E_cyl = 1/pi INTEGRAL L sin(theta) dw          theta from the cylinder's axis, over all
+ * directions semicylindrical  E_sc  = 1/pi INTEGRAL L sin(theta) (1 + cos(phi)) dw    phi from where the half cylinder
+ * faces hemispherical    E_hs  = 1/4 INTEGRAL L (1 + cos(theta)) dw     theta from the normal of its base spherical
+ * E_sph = 1/4 INTEGRAL L dw                      mean over the whole surface of a small sphere fluence rate     E_o   =
+ * INTEGRAL L dw                          the same by the area of its great circle
  *
- * The first five are flux on the body by the area of its curved surface, so that a uniform field of radiance L reads pi L; E_o
- * reads 4 pi L. CIE S 017:2020 calls both spherical irradiance: the words of 17-21-066 are a mean over the sphere, its note 2
- * divides by the great circle. EN 12665:2018, EN 13201-3:2015 (there as sums over luminaires). [lx], [W m^-2] */
+ * The first five are flux on the body by the area of its curved surface, so that a uniform field of radiance L reads pi
+ * L; E_o reads 4 pi L. CIE S 017:2020 calls both spherical irradiance: the words of 17-21-066 are a mean over the
+ * sphere, its note 2 divides by the great circle. EN 12665:2018, EN 13201-3:2015 (there as sums over luminaires). [lx],
+ * [W m^-2] */
 #include "meter/private.h"
 
 struct point_meter {
     struct sr_meter_common common;
-    sr_vec3 p;            // [m]
+    sr_vec3 p;               // [m]
     sr_vec3 n, axis, facing; // [1]
     struct sr_frame frame;
     bool is_free;
 };
 
 #define MEMBER(m) offsetof(struct point_meter, m)
-#define ROW_P {SR_PARAM_POINT3, "p", "m", 0, 0, 0, MEMBER(p), "where it stands"}
+#define ROW_P                                                                                                          \
+    {                                                                                                                  \
+        SR_PARAM_POINT3, "p", "m", 0, 0, 0, MEMBER(p), "where it stands"                                               \
+    }
 static const struct sr_param normal_params[] = {
     ROW_P,
     {SR_PARAM_NORMAL3, "n", "1", 0, 0, NAN, MEMBER(n), "normal; none: +z"},
@@ -36,12 +40,14 @@ static const struct sr_param axis_params[] = {
 static const struct sr_param facing_params[] = {
     ROW_P,
     {SR_PARAM_VECTOR3, "axis", "1", 0, 0, NAN, MEMBER(axis), "the cylinder's axis; none: +z"},
-    {SR_PARAM_VECTOR3, "facing", "1", 0, 0, NAN, MEMBER(facing), "where the curved half looks, square to the axis; none: +x"},
+    {SR_PARAM_VECTOR3, "facing", "1", 0, 0, NAN, MEMBER(facing),
+     "where the curved half looks, square to the axis; none: +x"},
     {.name = NULL},
 };
 static const struct sr_param point_params[] = {ROW_P, {.name = NULL}};
 
-static sr_status prepare_at(struct point_meter *m, const struct sr_transform *t, sr_vec3 z, const char *name, struct sr_error *error)
+static sr_status prepare_at(struct point_meter *m, const struct sr_transform *t, sr_vec3 z, const char *name,
+                            struct sr_error *error)
 {
     m->p = sr_transform_point(t, m->p);
     if (!sr_is_finite(m->p))
@@ -51,14 +57,16 @@ static sr_status prepare_at(struct point_meter *m, const struct sr_transform *t,
     return status;
 }
 
-static sr_status prepare_normal(void *self, const struct sr_transform *t, struct sr_arena *arena, struct sr_error *error)
+static sr_status prepare_normal(void *self, const struct sr_transform *t, struct sr_arena *arena,
+                                struct sr_error *error)
 {
     (void)arena;
     struct point_meter *m = self;
     return prepare_at(m, t, sr_transform_normal(t, meter_or_z(m->n)), "n", error);
 }
 
-static sr_status prepare_hemisphere(void *self, const struct sr_transform *t, struct sr_arena *arena, struct sr_error *error)
+static sr_status prepare_hemisphere(void *self, const struct sr_transform *t, struct sr_arena *arena,
+                                    struct sr_error *error)
 {
     ((struct point_meter *)self)->is_free = true;
     return prepare_normal(self, t, arena, error);
@@ -72,7 +80,8 @@ static sr_status prepare_axis(void *self, const struct sr_transform *t, struct s
     return prepare_at(m, t, sr_transform_vector(t, meter_or_z(m->axis)), "axis", error);
 }
 
-static sr_status prepare_facing(void *self, const struct sr_transform *t, struct sr_arena *arena, struct sr_error *error)
+static sr_status prepare_facing(void *self, const struct sr_transform *t, struct sr_arena *arena,
+                                struct sr_error *error)
 {
     struct point_meter *m = self;
     sr_status status = prepare_axis(self, t, arena, error);
@@ -135,8 +144,8 @@ static float irradiance_sample(const void *self, sr_u4 u, sr_vec3 *wi)
 
 /* ---- cylinder ---- */
 
-/* cos(theta) with density proportional to sin^2(theta): that of a uniform disk's points along one of its diameters. *v: what is
- * left, uniform and independent of it. */
+/* cos(theta) with density proportional to sin^2(theta): that of a uniform disk's points along one of its diameters. *v:
+ * what is left, uniform and independent of it. */
 static float semicircle(sr_vec2 u, float *v)
 {
     sr_vec2 d = sr_warp_disk(u);
@@ -232,23 +241,32 @@ static double extent_4pi(const void *self)
     return 4 * (double)SR_PI;
 }
 
-#define POINT(name_, what_, law_, suffix_, params_, prepare_, kind_response, kind_sample, kind_pdf, extent_)                                             \
-    {.name = name_, .what = what_, .law = law_, .suffix = suffix_, .kind = SR_KIND_FLUX_DENSITY, .params = params_, .size = sizeof(struct point_meter),        \
-     .prepare = prepare_, .place = place, .response = kind_response, .sample = kind_sample, .pdf = kind_pdf, .extent = extent_}
+#define POINT(name_, what_, law_, suffix_, params_, prepare_, kind_response, kind_sample, kind_pdf, extent_)           \
+    {                                                                                                                  \
+        .name = name_, .what = what_, .law = law_, .suffix = suffix_, .kind = SR_KIND_FLUX_DENSITY, .params = params_, \
+        .size = sizeof(struct point_meter), .prepare = prepare_, .place = place, .response = kind_response,            \
+        .sample = kind_sample, .pdf = kind_pdf, .extent = extent_                                                      \
+    }
 
-const struct sr_meter_model meter_irradiance = POINT("irradiance", "irradiance", "∫ L cos θ dω over the hemisphere of the normal", "", normal_params,
-                                                     prepare_normal, irradiance_response, irradiance_sample, irradiance_pdf, extent_pi);
-const struct sr_meter_model meter_cylindrical = POINT("cylindrical", "cylindrical irradiance", "1/π ∫ L sin θ dω, θ from the axis", "cyl", axis_params, prepare_axis,
-                                                      cylindrical_response, cylindrical_sample, cylindrical_pdf, extent_pi);
+const struct sr_meter_model meter_irradiance =
+    POINT("irradiance", "irradiance", "∫ L cos θ dω over the hemisphere of the normal", "", normal_params,
+          prepare_normal, irradiance_response, irradiance_sample, irradiance_pdf, extent_pi);
+const struct sr_meter_model meter_cylindrical =
+    POINT("cylindrical", "cylindrical irradiance", "1/π ∫ L sin θ dω, θ from the axis", "cyl", axis_params,
+          prepare_axis, cylindrical_response, cylindrical_sample, cylindrical_pdf, extent_pi);
 const struct sr_meter_model meter_semicylindrical =
-    POINT("semicylindrical", "semicylindrical irradiance", "1/π ∫ L sin θ (1 + cos φ) dω, θ from the axis, φ from where it faces", "sc", facing_params, prepare_facing,
+    POINT("semicylindrical", "semicylindrical irradiance",
+          "1/π ∫ L sin θ (1 + cos φ) dω, θ from the axis, φ from where it faces", "sc", facing_params, prepare_facing,
           semicylindrical_response, semicylindrical_sample, semicylindrical_pdf, extent_pi);
-const struct sr_meter_model meter_hemispherical = POINT("hemispherical", "hemispherical irradiance", "1/4 ∫ L (1 + cos θ) dω, θ from the normal", "hs", normal_params,
-                                                        prepare_hemisphere, hemispherical_response, hemispherical_sample, hemispherical_pdf, extent_pi);
-const struct sr_meter_model meter_spherical = POINT("spherical", "mean spherical irradiance", "1/4 ∫ L dω: mean over a small sphere's surface", "sph", point_params, prepare_free,
-                                                    spherical_response, sphere_sample, sphere_pdf, extent_pi);
-const struct sr_meter_model meter_fluence = POINT("fluence", "fluence rate (spherical irradiance by the area of the great circle)", "∫ L dω", "o", point_params, prepare_free, fluence_response,
-                                                  sphere_sample, sphere_pdf, extent_4pi);
+const struct sr_meter_model meter_hemispherical =
+    POINT("hemispherical", "hemispherical irradiance", "1/4 ∫ L (1 + cos θ) dω, θ from the normal", "hs", normal_params,
+          prepare_hemisphere, hemispherical_response, hemispherical_sample, hemispherical_pdf, extent_pi);
+const struct sr_meter_model meter_spherical =
+    POINT("spherical", "mean spherical irradiance", "1/4 ∫ L dω: mean over a small sphere's surface", "sph",
+          point_params, prepare_free, spherical_response, sphere_sample, sphere_pdf, extent_pi);
+const struct sr_meter_model meter_fluence =
+    POINT("fluence", "fluence rate (spherical irradiance by the area of the great circle)", "∫ L dω", "o", point_params,
+          prepare_free, fluence_response, sphere_sample, sphere_pdf, extent_4pi);
 
 struct sr_meter sr_meter_irradiance_at(struct sr_arena *arena, sr_vec3 p, sr_vec3 n)
 {
@@ -260,5 +278,6 @@ struct sr_meter sr_meter_irradiance_at(struct sr_arena *arena, sr_vec3 p, sr_vec
     m->p = p;
     m->n = n;
     m->common.fwhm = NAN;
-    return prepare_normal(m, &one, arena, &error) == SR_OK ? (struct sr_meter){&meter_irradiance, m} : (struct sr_meter){NULL, NULL};
+    return prepare_normal(m, &one, arena, &error) == SR_OK ? (struct sr_meter){&meter_irradiance, m}
+                                                           : (struct sr_meter){NULL, NULL};
 }

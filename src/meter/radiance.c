@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* A radiance meter: along a ray, or the mean over a cone of acceptance.
  *
- *     L,    or    1/Omega INTEGRAL over the cone of L dw,   Omega = 2 pi (1 - cos(half angle))        [cd m^-2], [W m^-2 sr^-1] */
+ *     L,    or    1/Omega INTEGRAL over the cone of L dw,   Omega = 2 pi (1 - cos(half angle))        [cd m^-2], [W
+ * m^-2 sr^-1] */
 #include "meter/private.h"
 
 struct radiance {
     struct sr_meter_common common;
-    sr_vec3 p, d, to;    // [m] [1] [m]
+    sr_vec3 p, d, to; // [m] [1] [m]
     float half_angle_deg;
     struct sr_frame frame;
     float cos_max, one_minus_cos, inverse_omega;
@@ -34,7 +35,8 @@ static sr_status prepare(void *self, const struct sr_transform *t, struct sr_are
         return sr_fail(error, SR_ERROR_INPUT, "\"p\" is no point: expected three finite numbers");
     sr_status status = meter_direction(isnan(m->to.x) ? "d" : "to", &d, error);
     m->frame = sr_frame_from_z(d);
-    double angle = (double)m->half_angle_deg * (double)SR_PI / 180, half = sin(angle / 2), one_minus_cos = 2 * half * half;
+    double angle = (double)m->half_angle_deg * (double)SR_PI / 180, half = sin(angle / 2),
+           one_minus_cos = 2 * half * half;
     m->one_minus_cos = (float)one_minus_cos;
     m->cos_max = (float)(1 - one_minus_cos);
     m->inverse_omega = (float)(1 / (2 * (double)SR_PI * one_minus_cos));
@@ -107,6 +109,8 @@ struct sr_meter sr_meter_radiance_along(struct sr_arena *arena, sr_vec3 p, sr_ve
     struct sr_error error = {0};
     if (!m)
         return (struct sr_meter){NULL, NULL};
-    *m = (struct radiance){.p = p, .d = d, .to = {NAN, NAN, NAN}, .half_angle_deg = half_angle * (180 / SR_PI), .common.fwhm = NAN};
-    return prepare(m, &one, arena, &error) == SR_OK ? (struct sr_meter){&meter_radiance, m} : (struct sr_meter){NULL, NULL};
+    *m = (struct radiance){
+        .p = p, .d = d, .to = {NAN, NAN, NAN}, .half_angle_deg = half_angle * (180 / SR_PI), .common.fwhm = NAN};
+    return prepare(m, &one, arena, &error) == SR_OK ? (struct sr_meter){&meter_radiance, m}
+                                                    : (struct sr_meter){NULL, NULL};
 }

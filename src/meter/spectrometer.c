@@ -3,22 +3,25 @@
  *
  *     X_k = INTEGRAL b(lambda - lambda_k) X(lambda) dlambda / INTEGRAL b dlambda       [per nm]
  *
- * b is a triangle or a rectangle of the given width at half height; a triangle as wide as the step counts every wavelength
- * once (CIE 233:2019). Limits: no stray light, no noise of its own. */
+ * b is a triangle or a rectangle of the given width at half height; a triangle as wide as the step counts every
+ * wavelength once (CIE 233:2019). Limits: no stray light, no noise of its own. */
 #include "meter/meter.h"
 
-sr_status sr_spectrometer_prepare(double lo, double step, double hi, double fwhm, enum sr_meter_bandpass bandpass, struct sr_spectrometer *s,
-                                  struct sr_error *error)
+sr_status sr_spectrometer_prepare(double lo, double step, double hi, double fwhm, enum sr_meter_bandpass bandpass,
+                                  struct sr_spectrometer *s, struct sr_error *error)
 {
     *s = (struct sr_spectrometer){0};
     double count = floor((hi - lo) / step + 1e-6) + 1;
     if (!(lo >= 100 && hi <= 20000 && step > 0 && hi >= lo && count <= 4096))
-        return sr_fail(error, SR_ERROR_INPUT, "wavelengths from %g by %g to %g nm: expected first, step, last, within 100 to 20000 nm, 4096 at most", lo, step,
-                       hi);
+        return sr_fail(
+            error, SR_ERROR_INPUT,
+            "wavelengths from %g by %g to %g nm: expected first, step, last, within 100 to 20000 nm, 4096 at most", lo,
+            step, hi);
     double width = isnan(fwhm) ? step : fwhm;
     if (!(width > 0))
         return sr_fail(error, SR_ERROR_INPUT, "a bandpass of %g nm: expected more than 0", width);
-    *s = (struct sr_spectrometer){.first = lo, .step = step, .fwhm = width, .count = (uint32_t)count, .bandpass = bandpass};
+    *s = (struct sr_spectrometer){
+        .first = lo, .step = step, .fwhm = width, .count = (uint32_t)count, .bandpass = bandpass};
     return SR_OK;
 }
 

@@ -28,23 +28,25 @@ static float draw_sphere(const void *self, sr_vec2 u, struct sr_point *x)
     return s->density;
 }
 
-static sr_status prepare_rectangle(const struct meter_surface_params *p, const struct sr_transform *t, struct meter_surface_self *s, double *area,
-                                   struct sr_error *error)
+static sr_status prepare_rectangle(const struct meter_surface_params *p, const struct sr_transform *t,
+                                   struct meter_surface_self *s, double *area, struct sr_error *error)
 {
     if (isnan(p->u.x) || isnan(p->v.x))
-        return sr_fail(error, SR_ERROR_INPUT, "a rectangle has a corner \"p\" and two edges: expected \"vector3 u\" and \"vector3 v\"");
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "a rectangle has a corner \"p\" and two edges: expected \"vector3 u\" and \"vector3 v\"");
     s->u = sr_transform_vector(t, p->u);
     s->v = sr_transform_vector(t, p->v);
     s->n = sr_cross(s->u, s->v);
     *area = (double)sr_length(s->n);
     if (!(*area > 0))
-        return sr_fail(error, SR_ERROR_INPUT, "the rectangle has no area: expected edges \"u\" and \"v\" in two directions");
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "the rectangle has no area: expected edges \"u\" and \"v\" in two directions");
     s->n = sr_normalize(s->n);
     return SR_OK;
 }
 
-static sr_status prepare_disk(const struct meter_surface_params *p, const struct sr_transform *t, struct meter_surface_self *s, double *area,
-                              struct sr_error *error)
+static sr_status prepare_disk(const struct meter_surface_params *p, const struct sr_transform *t,
+                              struct meter_surface_self *s, double *area, struct sr_error *error)
 {
     // the two radii in the plane, then moved: a disk that the transform makes an ellipse is one
     sr_vec3 n = meter_or_z(p->n);
@@ -59,20 +61,22 @@ static sr_status prepare_disk(const struct meter_surface_params *p, const struct
     return *area > 0 ? meter_direction("n", &s->n, error) : sr_fail(error, SR_ERROR_INPUT, "the disk has no area");
 }
 
-static sr_status prepare_sphere(const struct meter_surface_params *p, const struct sr_transform *t, struct meter_surface_self *s, double *area,
-                                struct sr_error *error)
+static sr_status prepare_sphere(const struct meter_surface_params *p, const struct sr_transform *t,
+                                struct meter_surface_self *s, double *area, struct sr_error *error)
 {
-    float a = sr_length(sr_transform_vector(t, (sr_vec3){1, 0, 0})), b = sr_length(sr_transform_vector(t, (sr_vec3){0, 1, 0})),
+    float a = sr_length(sr_transform_vector(t, (sr_vec3){1, 0, 0})),
+          b = sr_length(sr_transform_vector(t, (sr_vec3){0, 1, 0})),
           c = sr_length(sr_transform_vector(t, (sr_vec3){0, 0, 1}));
     if (fabsf(a - b) > 1e-4f * a || fabsf(a - c) > 1e-4f * a)
-        return sr_fail(error, SR_ERROR_INPUT, "the transform makes an ellipsoid of the sphere: expected the same scale along all axes");
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "the transform makes an ellipsoid of the sphere: expected the same scale along all axes");
     s->radius = p->radius * a;
     *area = 4 * (double)SR_PI * (double)s->radius * (double)s->radius;
     return *area > 0 ? SR_OK : sr_fail(error, SR_ERROR_INPUT, "the sphere has no area");
 }
 
-sr_status meter_surface_prepare(struct sr_meter_common *common, const struct meter_surface_params *p, const struct sr_transform *t, struct sr_arena *arena,
-                                struct sr_error *error)
+sr_status meter_surface_prepare(struct sr_meter_common *common, const struct meter_surface_params *p,
+                                const struct sr_transform *t, struct sr_arena *arena, struct sr_error *error)
 {
     if (common->surface.draw) // a shape's, found by its name
         return SR_OK;
@@ -87,6 +91,8 @@ sr_status meter_surface_prepare(struct sr_meter_common *common, const struct met
         status = sr_fail(error, SR_ERROR_INPUT, "the surface is not finite");
     s->density = (float)(1 / common->surface.area);
     common->surface.self = s;
-    common->surface.draw = p->shape == METER_RECTANGLE ? draw_rectangle : p->shape == METER_DISK ? draw_disk : draw_sphere;
+    common->surface.draw = p->shape == METER_RECTANGLE ? draw_rectangle
+                           : p->shape == METER_DISK    ? draw_disk
+                                                       : draw_sphere;
     return status;
 }

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Colours of curves, and scales of colours for maps, even to the eye.
  *
- * A scale is a path through OKLab: lightness L runs evenly from dark to light, so that equal steps of the value look equal
- * and a grey print keeps the order; hue and chroma only help to name the places. In OKLab
+ * A scale is a path through OKLab: lightness L runs evenly from dark to light, so that equal steps of the value look
+ * equal and a grey print keeps the order; hue and chroma only help to name the places. In OKLab
  *
  *     linear sRGB --M1--> cone responses --cube root--> --M2--> L, a, b                                          [1]
  *
- * B. Ottosson, A perceptual color space for image processing, 2020. Palette: M. Okabe, K. Ito, Color universal design, 2008.
- * Colours out of sRGB's gamut are cut; the scales here stay within it. */
+ * B. Ottosson, A perceptual color space for image processing, 2020. Palette: M. Okabe, K. Ito, Color universal design,
+ * 2008. Colours out of sRGB's gamut are cut; the scales here stay within it. */
 #include "plot/plot.h"
 
 struct sr_plot_colour sr_plot_palette(int i)
@@ -60,7 +60,8 @@ struct sr_plot_colour sr_plot_scale_colour(enum sr_plot_scale scale, double t)
     t = t < 0 ? 0 : t > 1 ? 1 : t;
     double lightness, chroma, hue;
     if (scale == SR_PLOT_PERCEPTUAL) {
-        // indigo, plum, terracotta, amber, pale yellow; chroma goes to nearly nothing at both ends, where the gamut does
+        // indigo, plum, terracotta, amber, pale yellow; chroma goes to nearly nothing at both ends, where the gamut
+        // does
         lightness = 0.16 + 0.81 * t;
         chroma = 0.045 + 0.105 * sin(3.14159265358979 * pow(t, 0.85));
         hue = (280 + 185 * t) * 3.14159265358979 / 180; // through magenta, red and orange

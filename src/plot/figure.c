@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* A figure: panels in rows and columns, a title above and a legend below, as SVG or PNG.
  *
- * The bytes depend on the description alone. Texts are drawn as outlines, so an SVG looks the same wherever it is shown; the font
- * is DejaVu Sans or what the system has in its place, and without any font that which is built into cairo. */
+ * The bytes depend on the description alone. Texts are drawn as outlines, so an SVG looks the same wherever it is
+ * shown; the font is DejaVu Sans or what the system has in its place, and without any font that which is built into
+ * cairo. */
 #include "plot/private.h"
 
 #include <cairo-svg.h>

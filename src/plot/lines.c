@@ -106,8 +106,8 @@ static size_t trail(struct plot_canvas *canvas, struct plot_box box, const struc
     return count;
 }
 
-/* Marks with their words along the line, above or below, where fewer points of curves lie. Their places join the points, each
- * so often that no legend goes there. */
+/* Marks with their words along the line, above or below, where fewer points of curves lie. Their places join the
+ * points, each so often that no legend goes there. */
 static size_t draw_marks(struct plot_canvas *canvas, struct plot_box box, const struct sr_plot_axis *x,
                          const struct sr_plot_panel *panel, double (*points)[2], size_t count)
 {

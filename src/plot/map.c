@@ -51,7 +51,8 @@ static uint32_t value_pixel(const struct sr_plot_panel *panel, const struct sr_p
 }
 
 /* Lines where the values, linear between the middles of their meshes, pass through a level. */
-static void draw_contours(struct plot_canvas *canvas, struct plot_box box, const struct sr_plot_panel *panel, double level)
+static void draw_contours(struct plot_canvas *canvas, struct plot_box box, const struct sr_plot_panel *panel,
+                          double level)
 {
     double wide = (box.x1 - box.x0) / panel->columns, tall = (box.y1 - box.y0) / panel->rows;
     for (uint32_t j = 0; j + 1 < panel->rows; ++j)
@@ -79,7 +80,8 @@ static void draw_contours(struct plot_canvas *canvas, struct plot_box box, const
 static struct plot_box picture_box(struct plot_box cell, const struct sr_plot_panel *panel, double right)
 {
     double size = fmin((cell.x1 - cell.x0 - right) / panel->columns, (cell.y1 - cell.y0 - 14) / panel->rows);
-    double x = (cell.x0 + cell.x1 - right - size * panel->columns) / 2, y = (cell.y0 + cell.y1 - size * panel->rows) / 2;
+    double x = (cell.x0 + cell.x1 - right - size * panel->columns) / 2,
+           y = (cell.y0 + cell.y1 - size * panel->rows) / 2;
     return (struct plot_box){x, y, x + size * panel->columns, y + size * panel->rows};
 }
 
@@ -104,7 +106,8 @@ sr_status sr_plot_draw_map(struct plot_canvas *canvas, struct plot_box cell, con
     cell = sr_plot_title(canvas, cell, panel->title);
     struct sr_plot_ticks ticks;
     double right = panel->pixels ? 0 : scale_width(canvas, &z, cell.y1 - cell.y0 - 60, &ticks);
-    struct plot_box box = panel->has_no_frame ? picture_box(cell, panel, right) : sr_plot_frame(canvas, cell, &x, &y, right, false);
+    struct plot_box box =
+        panel->has_no_frame ? picture_box(cell, panel, right) : sr_plot_frame(canvas, cell, &x, &y, right, false);
 
     // each pixel of the picture lies within one value: no reader blurs them
     uint32_t wide = (uint32_t)ceil((box.x1 - box.x0) * canvas->pixels);

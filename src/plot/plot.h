@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Figures: curves, polar diagrams, maps, pictures and surfaces with labelled axes, as SVG and PNG.
  *
- * A figure is described by plain structs and written by one call; nothing is kept between calls, and the same description
- * gives the same bytes. Lengths are in px, of which an SVG has 96 to the inch and a PNG `scale` pixels each.
+ * A figure is described by plain structs and written by one call; nothing is kept between calls, and the same
+ * description gives the same bytes. Lengths are in px, of which an SVG has 96 to the inch and a PNG `scale` pixels
+ * each.
  *
- * Texts are UTF-8 with two marks: _{below} and ^{above} the line, as in "θ_{o}" and "sr^{-1}". Where a figure says nothing
- * (zeros), it gets what suits the data. */
+ * Texts are UTF-8 with two marks: _{below} and ^{above} the line, as in "θ_{o}" and "sr^{-1}". Where a figure says
+ * nothing (zeros), it gets what suits the data. */
 #ifndef SR_PLOT_PLOT_H
 #define SR_PLOT_PLOT_H
 
@@ -111,13 +112,15 @@ struct sr_plot_panel {
     const struct sr_plot_mark *marks;
     uint32_t curve_count, mark_count;
     bool has_no_legend;
-    bool points_down; // a polar panel: a whole disc, its angles from the bottom, positive ones to the right, as lamps hang
+    bool points_down; // a polar panel: a whole disc, its angles from the bottom, positive ones to the right, as lamps
+                      // hang
 
     const double *values;  // [unit of z] of a map: rows * columns, the lowest y first; NaN: no value
     const uint8_t *pixels; // [1] of a picture: sRGB, three bytes each, the top row first; of a map: in place of values
     uint32_t rows, columns;
     enum sr_plot_scale scale;
-    bool has_no_frame; // a map without its x and y axes: a picture of values, its meshes as square as the box lets them be
+    bool has_no_frame; // a map without its x and y axes: a picture of values, its meshes as square as the box lets them
+                       // be
     bool has_contours; // of a map: lines at the ticks of its scale
 
     const struct sr_plot_body *bodies;

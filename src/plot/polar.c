@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Curves over an angle and a radius: how lobes are shown. Angles run from the top, clockwise: the normal points up.
  *
- * The radius is in proportion to the value, or to its logarithm over the axis' lowest value, which lies in the centre. */
+ * The radius is in proportion to the value, or to its logarithm over the axis' lowest value, which lies in the centre.
+ */
 #include "plot/private.h"
 
 #include <stdio.h>

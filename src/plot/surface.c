@@ -3,8 +3,8 @@
  *
  * With the eye at azimuth a and elevation e, a point (x, y, z) is seen at
  *     right = -x sin a + y cos a        up = -(x cos a + y sin a) sin e + z cos e
- * and lies nearer by (x cos a + y sin a) cos e + z sin e. The painter's order is that of the meshes' centres: right where
- * meshes are small against the distances between bodies; bodies that cut through each other need fine meshes. */
+ * and lies nearer by (x cos a + y sin a) cos e + z sin e. The painter's order is that of the meshes' centres: right
+ * where meshes are small against the distances between bodies; bodies that cut through each other need fine meshes. */
 #include "plot/private.h"
 
 #include <stdlib.h>

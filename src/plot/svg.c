@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* cairo's SVG made shorter, and always the same.
  *
- * Surfaces and images bear names with numbers that cairo counts up through the life of a process: they are counted anew from
+ * Surfaces and images bear names with numbers that cairo counts up through the life of a process: they are counted anew
+ * from
  * 1. Coordinates are rounded to 0.01 px, and styles that are SVG's defaults are left out: a third of the bytes. */
 #include "plot/private.h"
 

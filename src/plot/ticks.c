@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Where an axis has ticks, and what stands beside them.
  *
- * Linear axes step by 1, 2 or 5 times a power of ten, whichever gives the count nearest the wanted one; degrees by divisors
- * of 90. Logarithmic axes have a tick at each power of ten, or each n-th where there are many, and at 2 and 5 times it where
- * there are few. */
+ * Linear axes step by 1, 2 or 5 times a power of ten, whichever gives the count nearest the wanted one; degrees by
+ * divisors of 90. Logarithmic axes have a tick at each power of ten, or each n-th where there are many, and at 2 and 5
+ * times it where there are few. */
 #include "plot/private.h"
 
 #include <stdio.h>

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Spectral luminous efficiencies [1], 360 ... 830 nm by 1 nm: V (CIE 1924), V' (CIE 1951, 380 ... 780 nm), V_F of 2 and 10
- * degrees (CIE 170-2:2015, 390 ... 830 nm), zero outside; the last row is for interpolation. The largest efficacies [lm/W]
- * are 683 / V(540 THz = 555.016 nm in standard air), linear between the samples, but for V, which keeps the round 683.
- * Written by scripts/make-spectrum-data. */
+/* Spectral luminous efficiencies [1], 360 ... 830 nm by 1 nm: V (CIE 1924), V' (CIE 1951, 380 ... 780 nm), V_F of 2 and
+ * 10 degrees (CIE 170-2:2015, 390 ... 830 nm), zero outside; the last row is for interpolation. The largest efficacies
+ * [lm/W] are 683 / V(540 THz = 555.016 nm in standard air), linear between the samples, but for V, which keeps the
+ * round 683. Written by scripts/make-spectrum-data. */
 #include "quantity/private.h"
 
 // clang-format off

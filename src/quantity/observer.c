@@ -4,8 +4,9 @@
  *     X = INTEGRAL K(lambda) X_e(lambda) dlambda
  *     K = 1 W/W,  K_m V(lambda) lm/W,  lambda / (h c N_A) umol/J = 0.00835935 umol/J per nm
  *
- * CIE 018:2019; CIE 170-2:2015; CODATA 2019 (h, c and N_A are exact). K_m = 683 lm/W is rounded as usual: the tabulated V at
- * 540 THz (555.016 nm in air) gives 683.0016 lm/W, 2.3e-6 more. Limits: efficiencies linear between samples by 1 nm. */
+ * CIE 018:2019; CIE 170-2:2015; CODATA 2019 (h, c and N_A are exact). K_m = 683 lm/W is rounded as usual: the tabulated
+ * V at 540 THz (555.016 nm in air) gives 683.0016 lm/W, 2.3e-6 more. Limits: efficiencies linear between samples by 1
+ * nm. */
 #include "quantity/private.h"
 
 #include <string.h>
@@ -25,7 +26,8 @@ double sr_observer_at(enum sr_system system, double lambda)
         return 0;
     int i = (int)at, column = system - SR_PHOTOPIC;
     double t = at - i;
-    return sr_data_efficacy[column] * ((1 - t) * (double)sr_data_efficiency[i][column] + t * (double)sr_data_efficiency[i + 1][column]);
+    return sr_data_efficacy[column] *
+           ((1 - t) * (double)sr_data_efficiency[i][column] + t * (double)sr_data_efficiency[i + 1][column]);
 }
 
 double sr_observer_integral(enum sr_system system, const struct sr_spd *s, double lo, double hi)

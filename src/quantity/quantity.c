@@ -3,8 +3,8 @@
  *
  *     u(f)^2 = SUM (df/dx_i)^2 u_i^2,    nu = u^4 / SUM ((df/dx_i) u_i)^4 / nu_i
  *
- * GUM, JCGM 100:2008, 5.1.2 and G.4.1. Limits: x_i independent, and f nearly linear over their uncertainty: a ratio whose
- * divisor is known to worse than some percent needs a jackknife over replicates. */
+ * GUM, JCGM 100:2008, 5.1.2 and G.4.1. Limits: x_i independent, and f nearly linear over their uncertainty: a ratio
+ * whose divisor is known to worse than some percent needs a jackknife over replicates. */
 #include "quantity/quantity.h"
 
 struct sr_quantity sr_quantity_exact(double value, struct sr_unit unit)
@@ -27,7 +27,8 @@ struct sr_quantity sr_quantity_bounded(double largest, double samples, struct sr
     return (struct sr_quantity){.u = NAN, .upper = samples > 0 ? 3 * largest / samples : 0, .unit = unit};
 }
 
-struct sr_quantity sr_quantity_jackknife(const double *rows, uint32_t replicates, uint32_t columns, double (*f)(const double *means), struct sr_unit unit)
+struct sr_quantity sr_quantity_jackknife(const double *rows, uint32_t replicates, uint32_t columns,
+                                         double (*f)(const double *means), struct sr_unit unit)
 {
     double sum[8] = {0}, means[8], R = replicates;
     struct sr_tally left_out = {0};
@@ -42,7 +43,10 @@ struct sr_quantity sr_quantity_jackknife(const double *rows, uint32_t replicates
     for (uint32_t c = 0; c < columns; ++c)
         means[c] = sum[c] / R;
     // u^2 = (R - 1)/R SUM (left out - their mean)^2
-    return (struct sr_quantity){.value = R * f(means) - (R - 1) * left_out.mean, .u = sqrt(left_out.m2 * (R - 1) / R), .degrees = R - 1, .unit = unit};
+    return (struct sr_quantity){.value = R * f(means) - (R - 1) * left_out.mean,
+                                .u = sqrt(left_out.m2 * (R - 1) / R),
+                                .degrees = R - 1,
+                                .unit = unit};
 }
 
 double sr_quantity_expanded(const struct sr_quantity *q, double level)
@@ -69,31 +73,37 @@ static double part(const struct sr_quantity *q)
 }
 
 /* What two parts of the uncertainty make together. */
-static void combine(struct sr_quantity *out, double u_a, const struct sr_quantity *a, double u_b, const struct sr_quantity *b)
+static void combine(struct sr_quantity *out, double u_a, const struct sr_quantity *a, double u_b,
+                    const struct sr_quantity *b)
 {
     out->u = sqrt(u_a * u_a + u_b * u_b);
-    out->degrees = sr_effective_degrees((double[]){u_a, u_b}, (double[]){a->upper > 0 ? INFINITY : a->degrees, b->upper > 0 ? INFINITY : b->degrees}, 2);
+    out->degrees =
+        sr_effective_degrees((double[]){u_a, u_b},
+                             (double[]){a->upper > 0 ? INFINITY : a->degrees, b->upper > 0 ? INFINITY : b->degrees}, 2);
 }
 
-static sr_status add(const struct sr_quantity *a, double sign, const struct sr_quantity *b, struct sr_quantity *out, struct sr_error *error)
+static sr_status add(const struct sr_quantity *a, double sign, const struct sr_quantity *b, struct sr_quantity *out,
+                     struct sr_error *error)
 {
     *out = (struct sr_quantity){.value = NAN, .u = NAN, .unit = a->unit};
     if (!sr_unit_equal(a->unit, b->unit)) {
         char left[96], right[96];
-        return sr_fail(error, SR_ERROR_USAGE, "%s and %s cannot be added or subtracted", sr_unit_text(a->unit, left, sizeof left),
-                       sr_unit_text(b->unit, right, sizeof right));
+        return sr_fail(error, SR_ERROR_USAGE, "%s and %s cannot be added or subtracted",
+                       sr_unit_text(a->unit, left, sizeof left), sr_unit_text(b->unit, right, sizeof right));
     }
     out->value = a->value + sign * b->value;
     combine(out, part(a), a, part(b), b);
     return SR_OK;
 }
 
-sr_status sr_quantity_add(const struct sr_quantity *a, const struct sr_quantity *b, struct sr_quantity *out, struct sr_error *error)
+sr_status sr_quantity_add(const struct sr_quantity *a, const struct sr_quantity *b, struct sr_quantity *out,
+                          struct sr_error *error)
 {
     return add(a, 1, b, out, error);
 }
 
-sr_status sr_quantity_subtract(const struct sr_quantity *a, const struct sr_quantity *b, struct sr_quantity *out, struct sr_error *error)
+sr_status sr_quantity_subtract(const struct sr_quantity *a, const struct sr_quantity *b, struct sr_quantity *out,
+                               struct sr_error *error)
 {
     return add(a, -1, b, out, error);
 }
@@ -132,8 +142,8 @@ struct sr_quantity sr_quantity_ratio(const struct sr_quantity *a, const struct s
     return out;
 }
 
-sr_status sr_quantity_times(const struct sr_quantity *a, double size, struct sr_unit of_size, struct sr_unit expected, struct sr_quantity *out,
-                            struct sr_error *error)
+sr_status sr_quantity_times(const struct sr_quantity *a, double size, struct sr_unit of_size, struct sr_unit expected,
+                            struct sr_quantity *out, struct sr_error *error)
 {
     *out = sr_quantity_scale(a, size);
     out->unit = multiply_units(a->unit, of_size, 1);
@@ -141,6 +151,6 @@ sr_status sr_quantity_times(const struct sr_quantity *a, double size, struct sr_
         return SR_OK;
     char from[96], by[96], to[96];
     *out = (struct sr_quantity){.value = NAN, .u = NAN, .unit = expected};
-    return sr_fail(error, SR_ERROR_USAGE, "%s times %s is not %s", sr_unit_text(a->unit, from, sizeof from), sr_unit_text(of_size, by, sizeof by),
-                   sr_unit_text(expected, to, sizeof to));
+    return sr_fail(error, SR_ERROR_USAGE, "%s times %s is not %s", sr_unit_text(a->unit, from, sizeof from),
+                   sr_unit_text(of_size, by, sizeof by), sr_unit_text(expected, to, sizeof to));
 }

@@ -52,7 +52,8 @@ static void append_interval(const struct sr_quantity *q, const char *unit, char 
         append(text, size, "%.1g", U);
     else
         append_number(U, U > 0 ? place : exponent, U > 0 ? exponent : 0, text, size);
-    append(text, size, "%s (95 %%, k = %.2f, ν = ", unit, isinf(q->degrees) ? sr_normal_quantile(0.975) : sr_student_quantile(0.975, q->degrees));
+    append(text, size, "%s (95 %%, k = %.2f, ν = ", unit,
+           isinf(q->degrees) ? sr_normal_quantile(0.975) : sr_student_quantile(0.975, q->degrees));
     if (isinf(q->degrees))
         append(text, size, "∞)");
     else

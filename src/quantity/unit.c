@@ -3,15 +3,16 @@
  *
  *     unit = PRODUCT flux_i^a_i s^b m^c sr^d nm^e,     flux in W, lm, umol/s
  *
- * Two quantities may be added when all powers agree, so a scotopic lux is no lux, and photons of 400 … 700 nm are not photons
- * of all wavelengths. Names: SI brochure, 9th edition, 2.3; CIE S 017:2020. Limits: powers from -99 to 99. */
+ * Two quantities may be added when all powers agree, so a scotopic lux is no lux, and photons of 400 … 700 nm are not
+ * photons of all wavelengths. Names: SI brochure, 9th edition, 2.3; CIE S 017:2020. Limits: powers from -99 to 99. */
 #include "quantity/quantity.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const system_names[SR_SYSTEM_COUNT] = {"radiometric", "photopic", "scotopic", "cones2", "cones10", "photon", "par"};
+static const char *const system_names[SR_SYSTEM_COUNT] = {"radiometric", "photopic", "scotopic", "cones2",
+                                                          "cones10",     "photon",   "par"};
 
 const char *sr_system_name(enum sr_system system)
 {
@@ -111,9 +112,10 @@ char *sr_unit_text(struct sr_unit unit, char *text, size_t size)
     factors[n++] = (struct factor){"nm", unit.nanometre};
 
     char above[64] = "", below[64] = "";
-    int over = append_factors(factors, n, 1, above, sizeof above), under = append_factors(factors, n, -1, below, sizeof below);
-    snprintf(text, size, "%s%s%s%s%s%s", prefix, over || under ? above : "1", over || !under ? "" : "1", under ? "/" : "",
-             under > 1 ? "(" : "", below);
+    int over = append_factors(factors, n, 1, above, sizeof above),
+        under = append_factors(factors, n, -1, below, sizeof below);
+    snprintf(text, size, "%s%s%s%s%s%s", prefix, over || under ? above : "1", over || !under ? "" : "1",
+             under ? "/" : "", under > 1 ? "(" : "", below);
     size_t used = strlen(text);
     if (under > 1 && used + 1 < size)
         snprintf(text + used, size - used, ")");

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* More samples where a picture is noisy, without bias.
  *
- *     n_A(p) = n (0.1 + 0.9 sigma_B(p) / mean sigma_B),    picture = (mean_A + mean_B) / 2,    and the same with A and B changed
+ *     n_A(p) = n (0.1 + 0.9 sigma_B(p) / mean sigma_B),    picture = (mean_A + mean_B) / 2,    and the same with A and
+ * B changed
  *
- * sigma^2: variance of a sample's luminance in the pilot, averaged over 7 x 7 pixels, so that a pixel whose pilot found nothing
- * still gets what its neighbours need. Given B's pilot, n_A is a number, so that E[mean_A] is what it is for any number:
- * the halves cross over once, for a second decision would know of A's own values through B's counts. For a relative root mean
- * square error T of a picture of mean Y:  n = mean(sigma^2 / (0.1 + 0.9 sigma / mean sigma)) / (T Y)^2.
- * Crossed halves against the bias of stopping rules: D. Kirk & J. Arvo 1991 describe the bias; C. Stein 1945 the two stages.
- * Limits: the error that was aimed at is reached as far as the pilot knows sigma. */
+ * sigma^2: variance of a sample's luminance in the pilot, averaged over 7 x 7 pixels, so that a pixel whose pilot found
+ * nothing still gets what its neighbours need. Given B's pilot, n_A is a number, so that E[mean_A] is what it is for
+ * any number: the halves cross over once, for a second decision would know of A's own values through B's counts. For a
+ * relative root mean square error T of a picture of mean Y:  n = mean(sigma^2 / (0.1 + 0.9 sigma / mean sigma)) / (T
+ * Y)^2. Crossed halves against the bias of stopping rules: D. Kirk & J. Arvo 1991 describe the bias; C. Stein 1945 the
+ * two stages. Limits: the error that was aimed at is reached as far as the pilot knows sigma. */
 #include "render/private.h"
 
 enum { REPLICATES = 4, MOST_PILOT = 64, REACH = 3 }; // replicates of a half's pilot, and of what follows; reach [pixel]
@@ -31,17 +32,20 @@ static bool find_deviations(struct half *h, const double w[3])
     double *rows = sr_alloc(count * sizeof *rows), *variance = sr_alloc(count * sizeof *variance);
     if (rows && variance)
         for (size_t i = 0; i < count; ++i) {
-            struct sr_film_mean m = sr_film_region_mean(h->film, (uint32_t)(i % width), (uint32_t)(i / width), (uint32_t)(i % width) + 1, (uint32_t)(i / width) + 1, w);
+            struct sr_film_mean m = sr_film_region_mean(h->film, (uint32_t)(i % width), (uint32_t)(i / width),
+                                                        (uint32_t)(i % width) + 1, (uint32_t)(i / width) + 1, w);
             h->Y += m.mean / (double)count;
             variance[i] = isfinite(m.standard_error) ? m.standard_error * m.standard_error * h->film->pixels[i].n : 0;
         }
     for (size_t i = 0; rows && variance && i < count; ++i) {
-        uint32_t x = (uint32_t)(i % width), lo = x > REACH ? x - REACH : 0, hi = x + REACH < width ? x + REACH : width - 1;
+        uint32_t x = (uint32_t)(i % width), lo = x > REACH ? x - REACH : 0,
+                 hi = x + REACH < width ? x + REACH : width - 1;
         for (uint32_t k = lo; k <= hi; ++k)
             rows[i] += variance[i - x + k] / (hi - lo + 1);
     }
     for (size_t i = 0; rows && variance && i < count; ++i) {
-        uint32_t y = (uint32_t)(i / width), lo = y > REACH ? y - REACH : 0, hi = y + REACH < height ? y + REACH : height - 1;
+        uint32_t y = (uint32_t)(i / width), lo = y > REACH ? y - REACH : 0,
+                 hi = y + REACH < height ? y + REACH : height - 1;
         double sum = 0;
         for (uint32_t k = lo; k <= hi; ++k)
             sum += rows[i % width + (size_t)k * width] / (hi - lo + 1);
@@ -103,8 +107,8 @@ static double count_all(const struct half *h)
     return sum;
 }
 
-static sr_status render_halves(const struct sr_render_job *job, struct half half[2], struct sr_keeper *keeper, struct sr_render_report *report,
-                               struct sr_error *error)
+static sr_status render_halves(const struct sr_render_job *job, struct half half[2], struct sr_keeper *keeper,
+                               struct sr_render_report *report, struct sr_error *error)
 {
     struct sr_render_pass pass = {.keeper = keeper, .blocks = REPLICATES, .start_s = sr_clock_s() - report->render_s};
     uint32_t per_replicate = job->spp / (4 * 2 * REPLICATES), most = MOST_PILOT / (2 * REPLICATES);
@@ -144,7 +148,8 @@ static sr_status render_halves(const struct sr_render_job *job, struct half half
     return SR_OK;
 }
 
-sr_status sr_render_adaptive(const struct sr_render_job *job, struct sr_film **film, struct sr_render_report *report, struct sr_error *error)
+sr_status sr_render_adaptive(const struct sr_render_job *job, struct sr_film **film, struct sr_render_report *report,
+                             struct sr_error *error)
 {
     struct half half[2] = {0};
     struct sr_keeper keeper = {.keep = job->keep, .film_count = 2};

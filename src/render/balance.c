@@ -3,12 +3,22 @@
  *
  *     Phi_emitted = SUM over materials and media Phi_absorbed + Phi_escaped + Phi_given_up          [lm], [W]
  *
- * by particles from the lights (integrator.h); what is left of the difference is the closure, with its own uncertainty from
- * the same replicates. Light from outside counts as it enters the scene's sphere. What a BSDF loses that it should have kept
- * counts as absorbed by its material. */
+ * by particles from the lights (integrator.h); what is left of the difference is the closure, with its own uncertainty
+ * from the same replicates. Light from outside counts as it enters the scene's sphere. What a BSDF loses that it should
+ * have kept counts as absorbed by its material. */
 #include "render/render.h"
 
-enum { DEFAULT_REPLICATES = 16, DEFAULT_SAMPLES = 65536, EMITTED = 0, ABSORBED, ESCAPED, GIVEN_UP, CLOSURE, IN_MEDIA, PARTS };
+enum {
+    DEFAULT_REPLICATES = 16,
+    DEFAULT_SAMPLES = 65536,
+    EMITTED = 0,
+    ABSORBED,
+    ESCAPED,
+    GIVEN_UP,
+    CLOSURE,
+    IN_MEDIA,
+    PARTS
+};
 
 /* Sums of one replicate: the parts, then materials, then objects; each in two systems. */
 struct replicate {
@@ -24,7 +34,8 @@ struct balancing {
     struct replicate *replicates;
 };
 
-static void count(void *user, enum sr_particle_event event, const struct sr_hit *hit, sr_vec3 d, sr_spectrum flux, const struct sr_wavelengths *w)
+static void count(void *user, enum sr_particle_event event, const struct sr_hit *hit, sr_vec3 d, sr_spectrum flux,
+                  const struct sr_wavelengths *w)
 {
     (void)d;
     struct replicate *r = user;
@@ -35,7 +46,10 @@ static void count(void *user, enum sr_particle_event event, const struct sr_hit 
         ++r->dropped;
         return;
     }
-    int part = event == SR_PARTICLE_EMITTED ? EMITTED : event == SR_PARTICLE_ABSORBED ? ABSORBED : event == SR_PARTICLE_ESCAPED ? ESCAPED : GIVEN_UP;
+    int part = event == SR_PARTICLE_EMITTED    ? EMITTED
+               : event == SR_PARTICLE_ABSORBED ? ABSORBED
+               : event == SR_PARTICLE_ESCAPED  ? ESCAPED
+                                               : GIVEN_UP;
     for (int k = 0; k < 2; ++k) {
         r->sums[part][k] += value[k];
         r->sums[CLOSURE][k] += part == EMITTED ? value[k] : -value[k];
@@ -57,7 +71,8 @@ static void run_replicate(void *context, uint64_t index)
     for (uint64_t i = 0; i < b->n; ++i) {
         if ((i & 63) == 0 && job->cancel && atomic_load_explicit(job->cancel, memory_order_relaxed))
             return;
-        struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, UINT32_MAX, UINT32_MAX - 1, (uint32_t)index, (uint32_t)i);
+        struct sr_sampler sampler =
+            sr_sampler_start(job->sampler, job->seed, UINT32_MAX, UINT32_MAX - 1, (uint32_t)index, (uint32_t)i);
         struct sr_wavelengths w = sr_wavelengths_sample(job->lambda, sr_sample4(&sampler, SR_USE_FILM)[2]);
         sr_follow_particle(job->scene, &sampler, &w, &watch, &worker);
     }
@@ -74,16 +89,19 @@ static void read_part(const struct balancing *b, uint32_t R, uint32_t part, stru
     }
 }
 
-sr_status sr_measure_balance(const struct sr_render_job *job, const struct sr_measure_settings *settings, struct sr_arena *arena, struct sr_balance *out,
-                             struct sr_error *error)
+sr_status sr_measure_balance(const struct sr_render_job *job, const struct sr_measure_settings *settings,
+                             struct sr_arena *arena, struct sr_balance *out, struct sr_error *error)
 {
     uint32_t R = settings->replicates ? settings->replicates : DEFAULT_REPLICATES;
     struct sr_scene_counts counts = sr_scene_count(job->scene);
-    struct balancing b = {.job = job, .materials = (uint32_t)counts.materials, .objects = (uint32_t)counts.objects,
+    struct balancing b = {.job = job,
+                          .materials = (uint32_t)counts.materials,
+                          .objects = (uint32_t)counts.objects,
                           .n = ((settings->samples ? settings->samples : DEFAULT_SAMPLES) + R - 1) / R};
     *out = (struct sr_balance){.materials = b.materials, .objects = b.objects, .samples = b.n * R};
     if (R < 2 || R > 4096 || b.n > UINT32_MAX)
-        return sr_fail(error, SR_ERROR_USAGE, "%u replicates of %llu particles: expected 2 to 4096 of less than 2^32", R, (unsigned long long)b.n);
+        return sr_fail(error, SR_ERROR_USAGE, "%u replicates of %llu particles: expected 2 to 4096 of less than 2^32",
+                       R, (unsigned long long)b.n);
     struct sr_arena scratch = {0};
     size_t parts = PARTS + (size_t)b.materials + b.objects;
     b.replicates = sr_arena_alloc(&scratch, R * sizeof *b.replicates);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Checkpoints: the sums of a render and how far it has come, on disk at intervals, and back.
  *
- * A film's sums with the number of blocks in each pixel are all that a render knows: every sample's numbers follow from the scene
- * and the seed. So whoever goes on from them comes to the same bytes (docs/decisions/0019-checkpoints.md). */
+ * A film's sums with the number of blocks in each pixel are all that a render knows: every sample's numbers follow from
+ * the scene and the seed. So whoever goes on from them comes to the same bytes (docs/decisions/0019-checkpoints.md). */
 #define _POSIX_C_SOURCE 200809L
 #include "render/private.h"
 
@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 static const char kind[] = "checkpoint";
-static const double retry_s = 30; // after a failure
+static const double retry_s = 30;            // after a failure
 static const uint32_t COMPLETE = UINT32_MAX; // the pass of a render whose work is done
 
 /* The section "progress". */
@@ -31,8 +31,8 @@ static const char *film_name(const struct sr_keeper *k, uint32_t i)
 
 /* ---- writing ---- */
 
-static sr_status put_all(struct sr_keeper *k, struct sr_store_out *out, const struct progress *progress, const struct sr_film *changed,
-                         const struct sr_film *instead, struct sr_error *error)
+static sr_status put_all(struct sr_keeper *k, struct sr_store_out *out, const struct progress *progress,
+                         const struct sr_film *changed, const struct sr_film *instead, struct sr_error *error)
 {
     sr_status status = sr_store_put(out, "identity", k->keep->identity, strlen(k->keep->identity) + 1, error);
     if (status == SR_OK)
@@ -60,12 +60,20 @@ static void tell(struct sr_keeper *k, const struct sr_error *error)
     snprintf(k->told, sizeof k->told, "%s", error->text);
 }
 
-static bool write_now(struct sr_keeper *k, const struct sr_render_report *r, double share, const struct sr_film *changed, const struct sr_film *instead)
+static bool write_now(struct sr_keeper *k, const struct sr_render_report *r, double share,
+                      const struct sr_film *changed, const struct sr_film *instead)
 {
-    struct progress progress = {
-        .pass = k->pass, .first_dropped = {r->dropped_x, r->dropped_y, r->dropped_replicate, r->dropped_sample}, .has_dropped = r->dropped > 0,
-        .paths = r->paths, .rays = r->rays, .shadow_rays = r->shadow_rays, .vertices = r->vertices, .dropped = r->dropped,
-        .render_s = r->render_s, .share = share, .time_s = (int64_t)time(NULL)};
+    struct progress progress = {.pass = k->pass,
+                                .first_dropped = {r->dropped_x, r->dropped_y, r->dropped_replicate, r->dropped_sample},
+                                .has_dropped = r->dropped > 0,
+                                .paths = r->paths,
+                                .rays = r->rays,
+                                .shadow_rays = r->shadow_rays,
+                                .vertices = r->vertices,
+                                .dropped = r->dropped,
+                                .render_s = r->render_s,
+                                .share = share,
+                                .time_s = (int64_t)time(NULL)};
     struct sr_error error = {0};
     struct sr_store_out *out;
     double start_s = sr_clock_s();
@@ -93,21 +101,25 @@ void sr_keeper_end(struct sr_keeper *k, struct sr_render_report *report)
     report->kept = k->kept;
 }
 
-static sr_status keep_complete(const struct sr_render_job *job, struct sr_film *film, struct sr_render_part *part, struct sr_render_report *report, struct sr_error *error)
+static sr_status keep_complete(const struct sr_render_job *job, struct sr_film *film, struct sr_render_part *part,
+                               struct sr_render_report *report, struct sr_error *error)
 {
-    struct sr_keeper k = {.keep = job->keep, .films = {film}, .film_count = 1, .part = part, .pass = COMPLETE, .kept = report->kept};
+    struct sr_keeper k = {
+        .keep = job->keep, .films = {film}, .film_count = 1, .part = part, .pass = COMPLETE, .kept = report->kept};
     if (!write_now(&k, report, 1, NULL, NULL))
         sr_fail(error, SR_ERROR_RESOURCE, "%s", k.told);
     report->kept = k.kept;
     return error->status;
 }
 
-sr_status sr_render_checkpoint(const struct sr_render_job *job, const struct sr_film *film, struct sr_render_report *report, struct sr_error *error)
+sr_status sr_render_checkpoint(const struct sr_render_job *job, const struct sr_film *film,
+                               struct sr_render_report *report, struct sr_error *error)
 {
     return keep_complete(job, (struct sr_film *)(uintptr_t)film, NULL, report, error); // the film is read alone
 }
 
-sr_status sr_render_part_checkpoint(const struct sr_render_job *job, struct sr_render_part *part, struct sr_render_report *report, struct sr_error *error)
+sr_status sr_render_part_checkpoint(const struct sr_render_job *job, struct sr_render_part *part,
+                                    struct sr_render_report *report, struct sr_error *error)
 {
     return keep_complete(job, sr_part_splats_film(part), part, report, error);
 }
@@ -236,13 +248,21 @@ bool sr_render_checkpoint_tells(const struct sr_store_in *in, struct sr_render_p
     const char *identity = identity_of(in);
     if (strcmp(sr_store_kind(in), kind) != 0 || !p || !identity)
         return false;
-    *out = (struct sr_render_progress_kept){.identity = identity, .share = p->share, .render_s = p->render_s, .paths = p->paths, .rays = p->rays,
-                                            .shadow_rays = p->shadow_rays, .dropped = p->dropped, .time_s = p->time_s, .is_complete = p->pass == COMPLETE};
+    *out = (struct sr_render_progress_kept){.identity = identity,
+                                            .share = p->share,
+                                            .render_s = p->render_s,
+                                            .paths = p->paths,
+                                            .rays = p->rays,
+                                            .shadow_rays = p->shadow_rays,
+                                            .dropped = p->dropped,
+                                            .time_s = p->time_s,
+                                            .is_complete = p->pass == COMPLETE};
     return true;
 }
 
 /* The file, or the generation before it where it is damaged. NULL without an error: there is none. */
-static struct sr_store_in *open_either(struct sr_keeper *k, const char *previous, const char **path, struct sr_error *error)
+static struct sr_store_in *open_either(struct sr_keeper *k, const char *previous, const char **path,
+                                       struct sr_error *error)
 {
     struct sr_store_in *in = NULL;
     struct sr_error first = {0};
@@ -265,20 +285,23 @@ static struct sr_store_in *open_either(struct sr_keeper *k, const char *previous
         return NULL;
     }
     k->loses_file = is_there;
-    sr_log(k->keep->log, SR_WARNING, "%s%sgoing on from the generation before it, %s", is_there ? first.text : k->keep->path, is_there ? "; " : " is not there; ",
-           previous);
+    sr_log(k->keep->log, SR_WARNING, "%s%sgoing on from the generation before it, %s",
+           is_there ? first.text : k->keep->path, is_there ? "; " : " is not there; ", previous);
     return in;
 }
 
-static sr_status take(struct sr_keeper *k, const struct sr_store_in *in, const char *path, struct sr_render_report *report, struct sr_error *error)
+static sr_status take(struct sr_keeper *k, const struct sr_store_in *in, const char *path,
+                      struct sr_render_report *report, struct sr_error *error)
 {
     const struct progress *p = progress_of(in);
     const char *identity = identity_of(in);
     struct sr_render_difference d;
     if (!p || !identity)
-        return sr_fail(error, SR_ERROR_INPUT, "%s: has no sections \"identity\" and \"progress\" as this program writes them", path);
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "%s: has no sections \"identity\" and \"progress\" as this program writes them", path);
     if (sr_render_identity_differs(identity, k->keep->identity, &d))
-        return sr_fail(error, SR_ERROR_INPUT, "%s: belongs to another render: its %s is %s, and here it is %s", path, d.key, d.theirs, d.ours);
+        return sr_fail(error, SR_ERROR_INPUT, "%s: belongs to another render: its %s is %s, and here it is %s", path,
+                       d.key, d.theirs, d.ours);
     k->is_complete = p->pass == COMPLETE;
     if (!k->is_complete && p->pass >= 2 * k->film_count)
         return sr_fail(error, SR_ERROR_INPUT, "%s: is in pass %u, which this render has not got", path, p->pass);
@@ -299,9 +322,17 @@ static sr_status take(struct sr_keeper *k, const struct sr_store_in *in, const c
     k->pass = p->pass;
     k->kept.is_resumed = true;
     k->kept.resumed_share = p->share;
-    *report = (struct sr_render_report){.render_s = p->render_s, .paths = p->paths, .rays = p->rays, .shadow_rays = p->shadow_rays, .vertices = p->vertices,
-                                        .dropped = p->dropped, .dropped_x = p->first_dropped[0], .dropped_y = p->first_dropped[1],
-                                        .dropped_replicate = p->first_dropped[2], .dropped_sample = p->first_dropped[3], .is_complete = k->is_complete};
+    *report = (struct sr_render_report){.render_s = p->render_s,
+                                        .paths = p->paths,
+                                        .rays = p->rays,
+                                        .shadow_rays = p->shadow_rays,
+                                        .vertices = p->vertices,
+                                        .dropped = p->dropped,
+                                        .dropped_x = p->first_dropped[0],
+                                        .dropped_y = p->first_dropped[1],
+                                        .dropped_replicate = p->first_dropped[2],
+                                        .dropped_sample = p->first_dropped[3],
+                                        .is_complete = k->is_complete};
     return SR_OK;
 }
 

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* What a helper has made, as bytes that the owner of the picture adds to its film.
  *
- * A batch: its header, then each unit's header with the sums of its pixels (and their wavelengths' buckets), then what its paths
- * have splatted. Numbers are as they stand in memory: all processes run the same program on the same kind of processor.
+ * A batch: its header, then each unit's header with the sums of its pixels (and their wavelengths' buckets), then what
+ * its paths have splatted. Numbers are as they stand in memory: all processes run the same program on the same kind of
+ * processor.
  *
- * Splats of a unit can come long before the unit is done, so that a batch is closed only when all units that began in it are
- * done; meanwhile others begin in a second batch. */
+ * Splats of a unit can come long before the unit is done, so that a batch is closed only when all units that began in
+ * it are done; meanwhile others begin in a second batch. */
 #define _POSIX_C_SOURCE 200809L
 #include "render/private.h"
 
@@ -94,14 +95,18 @@ sr_status sr_crew_share_keeper(const struct sr_render_job *job, struct sr_keeper
 
 /* ---- writing ---- */
 
-struct sr_crew_batches *sr_crew_batches_create(const struct sr_render_job *job, const struct sr_film *film, struct sr_error *error)
+struct sr_crew_batches *sr_crew_batches_create(const struct sr_render_job *job, const struct sr_film *film,
+                                               struct sr_error *error)
 {
     struct sr_crew_batches *b = sr_alloc(sizeof *b);
     if (!b) {
         sr_fail(error, SR_ERROR_RESOURCE, "not enough memory");
         return NULL;
     }
-    *b = (struct sr_crew_batches){.crew = job->crew, .buckets = job->film.buckets, .is_full = job->with_aov, .opened_s = sr_clock_s(),
+    *b = (struct sr_crew_batches){.crew = job->crew,
+                                  .buckets = job->film.buckets,
+                                  .is_full = job->with_aov,
+                                  .opened_s = sr_clock_s(),
                                   .interval_s = film->splats ? SPLATS_INTERVAL_S : PLAIN_INTERVAL_S};
     pthread_mutex_init(&b->lock, NULL);
     for (int i = 0; i < 2; ++i) {
@@ -180,8 +185,8 @@ struct sr_crew_batch *sr_crew_enter(struct sr_crew_batches *b, struct sr_film **
     return batch;
 }
 
-static bool put_unit(const struct sr_crew_batches *b, struct sr_crew_batch *batch, const struct sr_crew_unit *unit, uint32_t pixels,
-                     const struct sr_film_block *blocks, const double *buckets)
+static bool put_unit(const struct sr_crew_batches *b, struct sr_crew_batch *batch, const struct sr_crew_unit *unit,
+                     uint32_t pixels, const struct sr_film_block *blocks, const double *buckets)
 {
     size_t buckets_B = (size_t)pixels * b->buckets * sizeof *buckets;
     size_t blocks_B = pixels * (b->is_full ? sizeof *blocks : sizeof(struct lean_block));
@@ -203,8 +208,9 @@ static bool put_unit(const struct sr_crew_batches *b, struct sr_crew_batch *batc
     return true;
 }
 
-void sr_crew_leave(struct sr_crew_batches *b, struct sr_crew_batch *batch, const struct sr_crew_unit *unit, uint32_t pixels,
-                   const struct sr_film_block *blocks, const double *buckets, const struct sr_render_counts *counts)
+void sr_crew_leave(struct sr_crew_batches *b, struct sr_crew_batch *batch, const struct sr_crew_unit *unit,
+                   uint32_t pixels, const struct sr_film_block *blocks, const double *buckets,
+                   const struct sr_render_counts *counts)
 {
     pthread_mutex_lock(&b->lock);
     bool has_splats = batch->splats.splats;
@@ -224,8 +230,8 @@ void sr_crew_leave(struct sr_crew_batches *b, struct sr_crew_batch *batch, const
         b->opened_s = now;
     }
     if (batch->is_closing && !batch->under_way) {
-        // nobody else touches it: the others of this process go on while it is packed. Batches leave in the order they were closed,
-        // as the next one cannot be closed before this one is through
+        // nobody else touches it: the others of this process go on while it is packed. Batches leave in the order they
+        // were closed, as the next one cannot be closed before this one is through
         pthread_mutex_unlock(&b->lock);
         bool is_ok = hand_over(b, batch);
         pthread_mutex_lock(&b->lock);

@@ -8,17 +8,42 @@ static const struct channel {
     const char *name, *unit;
 } picture[] = {{"R", "cd/m^2"}, {"G", "cd/m^2"}, {"B", "cd/m^2"}},
   errors[] = {{"SE.R", "cd/m^2"}, {"SE.G", "cd/m^2"}, {"SE.B", "cd/m^2"}, {"samples", "1"}},
-  auxiliary[] = {{"albedo.R", "1"}, {"albedo.G", "1"}, {"albedo.B", "1"}, {"N.X", "1"}, {"N.Y", "1"}, {"N.Z", "1"},
-                 {"Ns.X", "1"}, {"Ns.Y", "1"}, {"Ns.Z", "1"}, {"P.X", "m"}, {"P.Y", "m"}, {"P.Z", "m"},
-                 {"depth", "m"}, {"u", "1"}, {"v", "1"}, {"id.material", "1"}, {"id.object", "1"}, {"coverage", "1"}},
-  gbuffer[] = {{"Albedo.R", "1"}, {"Albedo.G", "1"}, {"Albedo.B", "1"}, {"N.X", "1"}, {"N.Y", "1"}, {"N.Z", "1"},
-               {"Ns.X", "1"}, {"Ns.Y", "1"}, {"Ns.Z", "1"}, {"P.X", "m"}, {"P.Y", "m"}, {"P.Z", "m"},
-               {"depth", "m"}, {"u", "1"}, {"v", "1"}, {"id.material", "1"}, {"id.object", "1"}, {"coverage", "1"}, // as above
-               {"dzdx", "m"}, {"dzdy", "m"}, {"Variance.R", "cd^2/m^4"}, {"Variance.G", "cd^2/m^4"}, {"Variance.B", "cd^2/m^4"},
-               {"RelativeVariance.R", "cd/m^2"}, {"RelativeVariance.G", "cd/m^2"}, {"RelativeVariance.B", "cd/m^2"}};
+  auxiliary[] = {{"albedo.R", "1"},    {"albedo.G", "1"},  {"albedo.B", "1"}, {"N.X", "1"},  {"N.Y", "1"},
+                 {"N.Z", "1"},         {"Ns.X", "1"},      {"Ns.Y", "1"},     {"Ns.Z", "1"}, {"P.X", "m"},
+                 {"P.Y", "m"},         {"P.Z", "m"},       {"depth", "m"},    {"u", "1"},    {"v", "1"},
+                 {"id.material", "1"}, {"id.object", "1"}, {"coverage", "1"}},
+  gbuffer[] = {{"Albedo.R", "1"},
+               {"Albedo.G", "1"},
+               {"Albedo.B", "1"},
+               {"N.X", "1"},
+               {"N.Y", "1"},
+               {"N.Z", "1"},
+               {"Ns.X", "1"},
+               {"Ns.Y", "1"},
+               {"Ns.Z", "1"},
+               {"P.X", "m"},
+               {"P.Y", "m"},
+               {"P.Z", "m"},
+               {"depth", "m"},
+               {"u", "1"},
+               {"v", "1"},
+               {"id.material", "1"},
+               {"id.object", "1"},
+               {"coverage", "1"}, // as above
+               {"dzdx", "m"},
+               {"dzdy", "m"},
+               {"Variance.R", "cd^2/m^4"},
+               {"Variance.G", "cd^2/m^4"},
+               {"Variance.B", "cd^2/m^4"},
+               {"RelativeVariance.R", "cd/m^2"},
+               {"RelativeVariance.G", "cd/m^2"},
+               {"RelativeVariance.B", "cd/m^2"}};
 
 enum {
-    PICTURE = 3, ERRORS = 4, AUXILIARY = sizeof auxiliary / sizeof auxiliary[0], GBUFFER = sizeof gbuffer / sizeof gbuffer[0],
+    PICTURE = 3,
+    ERRORS = 4,
+    AUXILIARY = sizeof auxiliary / sizeof auxiliary[0],
+    GBUFFER = sizeof gbuffer / sizeof gbuffer[0],
     BUCKET_NAME = 32
 };
 
@@ -63,7 +88,8 @@ static float *put_gbuffer(float *out, const struct sr_film_aov *a)
     *out++ = a->dzdx * per_hit;
     *out++ = a->dzdy * per_hit;
     for (int c = 0; c < 3; ++c) {
-        double n = a->hits, mean = n > 0 ? a->rgb[c] / n : 0, variance = n > 1 ? fmax(0, a->square[c] - n * mean * mean) / (n - 1) : 0;
+        double n = a->hits, mean = n > 0 ? a->rgb[c] / n : 0,
+               variance = n > 1 ? fmax(0, a->square[c] - n * mean * mean) / (n - 1) : 0;
         *out++ = (float)variance;
         relative[c] = mean != 0 ? (float)(variance / mean) : 0;
     }
@@ -75,20 +101,22 @@ static float *put_gbuffer(float *out, const struct sr_film_aov *a)
 /* "S0.374,688nm", as in the layout of A. Fichet, R. Pacanowski & A. Wilkie, 2021: the middle of the bucket. */
 static void name_bucket(const struct sr_film_settings *s, uint32_t bucket, char name[BUCKET_NAME])
 {
-    double lambda = (double)s->lambda_min + ((double)bucket + 0.5) / s->buckets * ((double)s->lambda_max - (double)s->lambda_min);
+    double lambda =
+        (double)s->lambda_min + ((double)bucket + 0.5) / s->buckets * ((double)s->lambda_max - (double)s->lambda_min);
     snprintf(name, BUCKET_NAME, "S0.%.3fnm", lambda);
     for (char *c = name + 3; *c; ++c)
         if (*c == '.')
             *c = ',';
 }
 
-static sr_status create(const struct sr_film *film, const char **names, const char **units, uint32_t count, char (*bucket_names)[BUCKET_NAME],
-                        struct sr_image **image, struct sr_error *error)
+static sr_status create(const struct sr_film *film, const char **names, const char **units, uint32_t count,
+                        char (*bucket_names)[BUCKET_NAME], struct sr_image **image, struct sr_error *error)
 {
     for (uint32_t i = 0; i < film->settings.buckets; ++i) {
         name_bucket(&film->settings, i, bucket_names[i]);
         names[count] = bucket_names[i];
-        units[count++] = film->settings.bucket_scale < 1 ? "W/(m^2 sr nm)" : "1"; // of photometric scenes: as pbrt counts
+        units[count++] =
+            film->settings.bucket_scale < 1 ? "W/(m^2 sr nm)" : "1"; // of photometric scenes: as pbrt counts
     }
     if (sr_image_create(film->width, film->height, count, names, SR_IMAGE_FLOATS, image, error) != SR_OK)
         return error->status;
@@ -143,7 +171,8 @@ static void fill_band(void *context, uint64_t band)
     }
 }
 
-sr_status sr_render_image(const struct sr_film *film, bool with_error, bool is_replicated, struct sr_image **image, struct sr_error *error)
+sr_status sr_render_image(const struct sr_film *film, bool with_error, bool is_replicated, struct sr_image **image,
+                          struct sr_error *error)
 {
     enum { MOST = PICTURE + ERRORS + GBUFFER };
     uint32_t count = 0, buckets = film->settings.buckets;

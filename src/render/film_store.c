@@ -47,7 +47,8 @@ sr_status sr_film_put(struct sr_store_out *out, const char *name, const struct s
     return status;
 }
 
-sr_status sr_film_get(const struct sr_store_in *in, const char *path, const char *name, struct sr_film *film, struct sr_error *error)
+sr_status sr_film_get(const struct sr_store_in *in, const char *path, const char *name, struct sr_film *film,
+                      struct sr_error *error)
 {
     uint64_t paths[PATHS_COUNT];
     struct part parts[FILM_PARTS];
@@ -58,16 +59,16 @@ sr_status sr_film_get(const struct sr_store_in *in, const char *path, const char
         snprintf(section, sizeof section, "%s.%s", name, parts[i].name);
         const void *data = sr_store_get(in, section, &size);
         if (!data != !parts[i].data || (data && size != parts[i].size))
-            return sr_fail(error, SR_ERROR_INPUT, "%s: its section \"%s\" has %zu bytes, and this picture's has %zu", path, section, size,
-                           parts[i].data ? parts[i].size : 0);
+            return sr_fail(error, SR_ERROR_INPUT, "%s: its section \"%s\" has %zu bytes, and this picture's has %zu",
+                           path, section, size, parts[i].data ? parts[i].size : 0);
         if (data)
             memcpy(parts[i].data, data, size);
     }
     if (!film->splats)
         return SR_OK;
     if (paths[0] != film->splats->groups)
-        return sr_fail(error, SR_ERROR_INPUT, "%s: has %llu groups of paths from the lights, and this picture %u", path, (unsigned long long)paths[0],
-                       film->splats->groups);
+        return sr_fail(error, SR_ERROR_INPUT, "%s: has %llu groups of paths from the lights, and this picture %u", path,
+                       (unsigned long long)paths[0], film->splats->groups);
     memcpy(film->splats->paths, &paths[1], sizeof film->splats->paths);
     film->splats->dropped = paths[PATHS_COUNT - 1];
     return SR_OK;
@@ -76,7 +77,8 @@ sr_status sr_film_get(const struct sr_store_in *in, const char *path, const char
 struct sr_film *sr_film_twin(const struct sr_film *film, struct sr_error *error)
 {
     struct sr_film *twin;
-    if (sr_film_create(&film->settings, film->has_aov, &twin, error) == SR_OK && film->splats && sr_film_add_splats(twin, film->splats->groups, error) != SR_OK) {
+    if (sr_film_create(&film->settings, film->has_aov, &twin, error) == SR_OK && film->splats &&
+        sr_film_add_splats(twin, film->splats->groups, error) != SR_OK) {
         sr_film_destroy(twin);
         twin = NULL;
     }

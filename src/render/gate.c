@@ -90,8 +90,11 @@ void sr_run_tell_progress(struct run *run, uint64_t units_done)
         double elapsed = now - run->pass->start_s, share = sr_run_share(run, units_done);
         pthread_rwlock_wrlock(&run->film_lock);
         struct sr_render_progress p = {
-            .share = share, .elapsed_s = elapsed, .left_s = share > 0 ? elapsed * (1 - share) / share : NAN,
-            .rays = run->base.rays + run->base.shadow_rays + atomic_load(&run->rays) + atomic_load(&run->shadow_rays), .film = run->film,
+            .share = share,
+            .elapsed_s = elapsed,
+            .left_s = share > 0 ? elapsed * (1 - share) / share : NAN,
+            .rays = run->base.rays + run->base.shadow_rays + atomic_load(&run->rays) + atomic_load(&run->shadow_rays),
+            .film = run->film,
         };
         job->progress(job->user, &p);
         pthread_rwlock_unlock(&run->film_lock);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* What makes the bytes of a picture, as text: two runs whose identities are equal give equal bytes, and sums of one may be
- * continued by the other. Threads, tiles, outputs and times have no say in them, and do not stand here. What scene files hold is
- * known by their hash; what they leave to the program and its options stands here by name. */
+/* What makes the bytes of a picture, as text: two runs whose identities are equal give equal bytes, and sums of one may
+ * be continued by the other. Threads, tiles, outputs and times have no say in them, and do not stand here. What scene
+ * files hold is known by their hash; what they leave to the program and its options stands here by name. */
 #include "render/render.h"
 
 #include <stdio.h>
@@ -75,7 +75,8 @@ static void add_film(struct text *t, const struct sr_film_settings *f)
     add_line(t, "film.white_balance %.9g K", (double)f->white_balance);
     add_line(t, "film.max_component %.9g", (double)f->max_component);
     add_line(t, "film.camera %u", f->camera1);
-    add_line(t, "film.buckets %u %.9g %.9g %.9g", f->buckets, (double)f->lambda_min, (double)f->lambda_max, (double)f->bucket_scale);
+    add_line(t, "film.buckets %u %.9g %.9g %.9g", f->buckets, (double)f->lambda_min, (double)f->lambda_max,
+             (double)f->bucket_scale);
     add_line(t, "film.gbuffer %s", f->is_gbuffer ? f->of_points ? "camera" : "world" : "no");
 }
 

@@ -3,8 +3,8 @@
  *
  *     I(cell) = flux that leaves into the cell / its solid angle          [cd] or [W/sr], with the spread of replicates
  *
- * Rays that leave a source without touching anything count as all others. Limits: a sky is no luminaire, its light crosses the
- * scene: refused. */
+ * Rays that leave a source without touching anything count as all others. Limits: a sky is no luminaire, its light
+ * crosses the scene: refused. */
 #include "render/measure.h"
 
 enum { DEFAULT_REPLICATES = 16, DEFAULT_SAMPLES = 1 << 20 };
@@ -23,7 +23,8 @@ struct sorted {
     double *sums;
 };
 
-static void leave(void *user, enum sr_particle_event event, const struct sr_hit *hit, sr_vec3 d, sr_spectrum flux, const struct sr_wavelengths *w)
+static void leave(void *user, enum sr_particle_event event, const struct sr_hit *hit, sr_vec3 d, sr_spectrum flux,
+                  const struct sr_wavelengths *w)
 {
     (void)hit;
     const struct sorted *to = user;
@@ -43,7 +44,8 @@ static void run_replicate(void *context, uint64_t r)
     struct sr_particle_watch watch = {leave, &to};
     struct sr_worker worker = {0};
     for (uint64_t i = 0; i < s->n && ((i & 63) || !measure_is_cancelled(s->job)); ++i) {
-        struct sr_sampler sampler = sr_sampler_start(s->job->sampler, s->job->seed, UINT32_MAX - s->stream, UINT32_MAX - 2, (uint32_t)r, (uint32_t)i);
+        struct sr_sampler sampler = sr_sampler_start(s->job->sampler, s->job->seed, UINT32_MAX - s->stream,
+                                                     UINT32_MAX - 2, (uint32_t)r, (uint32_t)i);
         struct sr_wavelengths w = sr_wavelengths_sample(s->job->lambda, sr_sample4(&sampler, SR_USE_FILM)[2]);
         sr_follow_particle(s->job->scene, &sampler, &w, &watch, &worker);
     }
@@ -73,8 +75,9 @@ static void read_table(const struct sorting *s, uint32_t R, struct sr_intensity_
     out->flux = sr_quantity_of_tally(&all, sr_unit_of(SR_KIND_FLUX, s->system, false));
 }
 
-sr_status sr_measure_intensity(const struct sr_render_job *job, const struct sr_meter *meter, const struct sr_measure_settings *settings,
-                               struct sr_arena *arena, struct sr_intensity_table *out, struct sr_error *error)
+sr_status sr_measure_intensity(const struct sr_render_job *job, const struct sr_meter *meter,
+                               const struct sr_measure_settings *settings, struct sr_arena *arena,
+                               struct sr_intensity_table *out, struct sr_error *error)
 {
     uint32_t R = settings->replicates ? settings->replicates : DEFAULT_REPLICATES;
     uint64_t samples = settings->samples ? settings->samples : DEFAULT_SAMPLES;
@@ -82,14 +85,21 @@ sr_status sr_measure_intensity(const struct sr_render_job *job, const struct sr_
     if (!meter->model->far)
         return sr_fail(error, SR_ERROR_USAGE, "a meter of kind %s has no far field", meter->model->name);
     if (R < 2 || R > 4096 || samples / R >= UINT32_MAX)
-        return sr_fail(error, SR_ERROR_USAGE, "%u replicates of %llu particles: expected 2 to 4096 of less than 2^32", R, (unsigned long long)(samples / R));
+        return sr_fail(error, SR_ERROR_USAGE, "%u replicates of %llu particles: expected 2 to 4096 of less than 2^32",
+                       R, (unsigned long long)(samples / R));
     const struct sr_lights *lights = sr_scene_lights(job->scene);
     for (uint32_t i = 0; i < lights->count; ++i)
         if (lights->lights[i].model->is_infinite)
-            return sr_fail(error, SR_ERROR_INPUT, "the scene has light from outside (\"%s\"), which has no intensity: a goniophotometer wants luminaires alone",
-                           lights->lights[i].model->name);
+            return sr_fail(
+                error, SR_ERROR_INPUT,
+                "the scene has light from outside (\"%s\"), which has no intensity: a goniophotometer wants luminaires alone",
+                lights->lights[i].model->name);
     meter->model->raster(meter->self, &out->c_count, &out->gamma_count);
-    struct sorting s = {.job = job, .meter = meter, .system = settings->system, .n = (samples + R - 1) / R, .cells = out->c_count * out->gamma_count,
+    struct sorting s = {.job = job,
+                        .meter = meter,
+                        .system = settings->system,
+                        .n = (samples + R - 1) / R,
+                        .cells = out->c_count * out->gamma_count,
                         .stream = settings->stream};
     struct sr_arena scratch = {0};
     s.sums = sr_arena_alloc(&scratch, (size_t)R * s.cells * sizeof *s.sums);

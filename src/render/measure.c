@@ -3,9 +3,9 @@
  *
  *     X = 1/R SUM X_r,    u^2 = 1/(R (R - 1)) SUM (X_r - X)^2,    nu = R - 1
  *
- * To a target: rounds grow, each with random numbers of its own; how many samples the last one takes follows from the rounds
- * before it, and it alone is the result (the two stages of Stein 1945, of which the first may be repeated). Whoever stopped
- * as soon as the error looks small would keep the runs that have missed the bright paths. */
+ * To a target: rounds grow, each with random numbers of its own; how many samples the last one takes follows from the
+ * rounds before it, and it alone is the result (the two stages of Stein 1945, of which the first may be repeated).
+ * Whoever stopped as soon as the error looks small would keep the runs that have missed the bright paths. */
 #include "render/measure.h"
 
 #include <string.h>
@@ -25,14 +25,16 @@ struct batch {
 static void run_unit(void *context, uint64_t i)
 {
     const struct batch *b = context;
-    uint64_t r = i / b->units, k = i % b->units, begin = b->begin + k * UNIT, end = begin + UNIT < b->end ? begin + UNIT : b->end;
+    uint64_t r = i / b->units, k = i % b->units, begin = b->begin + k * UNIT,
+             end = begin + UNIT < b->end ? begin + UNIT : b->end;
     if (!measure_is_cancelled(b->m->job))
         measure_run(b->m, (uint32_t)r, begin, end, &b->sums[i]);
 }
 
-/* Sums over n samples of each replicate: channels[r * m->channels + c]. Units are merged in their order, so that the result
- * does not depend on threads. Cancelled: what whole batches have brought. */
-static void run_round(const struct measuring *m, uint64_t n, struct measure_sums *units, double *unit_channels, struct measure_sums *total)
+/* Sums over n samples of each replicate: channels[r * m->channels + c]. Units are merged in their order, so that the
+ * result does not depend on threads. Cancelled: what whole batches have brought. */
+static void run_round(const struct measuring *m, uint64_t n, struct measure_sums *units, double *unit_channels,
+                      struct measure_sums *total)
 {
     double *channels = total->channels;
     *total = (struct measure_sums){.least = INFINITY, .channels = channels};
@@ -41,7 +43,8 @@ static void run_round(const struct measuring *m, uint64_t n, struct measure_sums
     uint32_t batch_units = 1;
     for (uint64_t begin = 0; begin < n && !measure_is_cancelled(m->job);) {
         uint64_t end = begin + (uint64_t)batch_units * UNIT < n ? begin + (uint64_t)batch_units * UNIT : n;
-        struct batch b = {.m = m, .begin = begin, .end = end, .units = (uint32_t)((end - begin + UNIT - 1) / UNIT), .sums = units};
+        struct batch b = {
+            .m = m, .begin = begin, .end = end, .units = (uint32_t)((end - begin + UNIT - 1) / UNIT), .sums = units};
         uint32_t count = b.units * m->replicates;
         memset(unit_channels, 0, (size_t)count * m->channels * sizeof *unit_channels);
         for (uint32_t i = 0; i < count; ++i)
@@ -81,15 +84,16 @@ static struct sr_quantity with_rounding(struct sr_quantity q, double rounding)
     return q;
 }
 
-/* Nets count evenly: of n samples that are a or b, all replicates may hold the same number of each, although the share of b
- * is no multiple of 1/n. What such replicates cannot show is at most what 3 samples in all would change (the rule of three
- * at 95 %, as where nothing is found), so that u is taken to be half of that at least. [1] of the value */
+/* Nets count evenly: of n samples that are a or b, all replicates may hold the same number of each, although the share
+ * of b is no multiple of 1/n. What such replicates cannot show is at most what 3 samples in all would change (the rule
+ * of three at 95 %, as where nothing is found), so that u is taken to be half of that at least. [1] of the value */
 static double resolution(const struct measure_sums *total)
 {
     return total->total > 0 ? 1.5 * (total->largest - total->least) / total->total : 0;
 }
 
-static struct sr_quantity reading_of(const struct measuring *m, const struct measure_sums *total, uint32_t channel, struct sr_unit unit)
+static struct sr_quantity reading_of(const struct measuring *m, const struct measure_sums *total, uint32_t channel,
+                                     struct sr_unit unit)
 {
     struct sr_tally tally = {0};
     double n = (double)total->samples / m->replicates;
@@ -100,12 +104,14 @@ static struct sr_quantity reading_of(const struct measuring *m, const struct mea
     return with_rounding(q, 1e-6 * fabs(q.value));
 }
 
-/* Ratios of X, Y, Z: from the sums of all replicates, with the uncertainty of the jackknife (Quenouille 1956, Tukey 1958). */
+/* Ratios of X, Y, Z: from the sums of all replicates, with the uncertainty of the jackknife (Quenouille 1956, Tukey
+ * 1958). */
 static void read_colour(const struct measuring *m, const struct measure_sums *total, struct sr_measurement *out)
 {
     static const uint32_t channel[3] = {MEASURE_X, SR_PHOTOPIC, MEASURE_Z};
     uint32_t R = m->replicates;
-    double n = (double)total->samples / R, all[3] = {0}, mean[SR_COLOUR_COUNT] = {0}, m2[SR_COLOUR_COUNT] = {0}, c[SR_COLOUR_COUNT];
+    double n = (double)total->samples / R, all[3] = {0}, mean[SR_COLOUR_COUNT] = {0}, m2[SR_COLOUR_COUNT] = {0},
+           c[SR_COLOUR_COUNT];
     for (uint32_t r = 0; r < R; ++r)
         for (int i = 0; i < 3; ++i)
             all[i] += total->channels[(size_t)r * m->channels + channel[i]];
@@ -123,9 +129,14 @@ static void read_colour(const struct measuring *m, const struct measure_sums *to
         c[i] = all[i] / (n * R);
     sr_colour_of(c);
     for (int i = 0; i < SR_COLOUR_COUNT; ++i) {
-        struct sr_quantity q = {.value = c[i], .u = sqrt(m2[i] * (R - 1) / R), .degrees = R - 1,
-                                .unit = i <= SR_COLOUR_Z ? out->value[SR_PHOTOPIC].unit : (struct sr_unit){.second = 0}};
-        out->colour[i] = with_rounding(q, i == SR_COLOUR_DUV ? 1e-6 : i == SR_COLOUR_CCT ? 1e-5 * c[i] : 1e-6 * fabs(c[i]));
+        struct sr_quantity q = {.value = c[i],
+                                .u = sqrt(m2[i] * (R - 1) / R),
+                                .degrees = R - 1,
+                                .unit =
+                                    i <= SR_COLOUR_Z ? out->value[SR_PHOTOPIC].unit : (struct sr_unit){.second = 0}};
+        out->colour[i] = with_rounding(q, i == SR_COLOUR_DUV   ? 1e-6
+                                          : i == SR_COLOUR_CCT ? 1e-5 * c[i]
+                                                               : 1e-6 * fabs(c[i]));
     }
 }
 
@@ -157,8 +168,8 @@ static uint64_t whole_net(double n)
     return (whole + step - 1) / step * step;
 }
 
-/* How many samples of each replicate the target needs, by the round before: u^2 falls as 1/n at least. The factor makes up
- * for the chance in both rounds' u^2, so that nine of ten last rounds meet the target. */
+/* How many samples of each replicate the target needs, by the round before: u^2 falls as 1/n at least. The factor makes
+ * up for the chance in both rounds' u^2, so that nine of ten last rounds meet the target. */
 static double needed(const struct measuring *m, const struct sr_measurement *now, uint64_t n)
 {
     const struct sr_quantity *q = &now->value[m->settings->system];
@@ -172,9 +183,10 @@ struct plan {
     bool is_last;
 };
 
-/* What comes after a round of n samples that has taken elapsed_s in all. The last one takes no fewer: where u falls faster than
- * 1 / sqrt(n), as with nets, it rises faster too. */
-static struct plan plan_next(const struct measuring *m, const struct sr_measurement *now, uint64_t n, uint64_t most, double round_s, double elapsed_s)
+/* What comes after a round of n samples that has taken elapsed_s in all. The last one takes no fewer: where u falls
+ * faster than 1 / sqrt(n), as with nets, it rises faster too. */
+static struct plan plan_next(const struct measuring *m, const struct sr_measurement *now, uint64_t n, uint64_t most,
+                             double round_s, double elapsed_s)
 {
     const struct sr_measure_settings *s = m->settings;
     double need = s->error > 0 ? needed(m, now, n) : INFINITY, limit = (double)most;
@@ -192,16 +204,21 @@ static sr_status check(const struct sr_measure_settings *s, struct sr_error *err
     if (s->replicates < 2 || s->replicates > 4096)
         return sr_fail(error, SR_ERROR_USAGE, "%u replicates: expected 2 to 4096", (unsigned)s->replicates);
     if (!(s->error >= 0 && s->error < 1) || !(s->time_s >= 0))
-        return sr_fail(error, SR_ERROR_USAGE, "a target of %g and a time of %g s: expected 0 to 1 and 0 or more", s->error, s->time_s);
+        return sr_fail(error, SR_ERROR_USAGE, "a target of %g and a time of %g s: expected 0 to 1 and 0 or more",
+                       s->error, s->time_s);
     return SR_OK;
 }
 
-static void run_rounds(struct measuring *m, struct measure_sums *units, double *unit_channels, struct measure_sums *total, struct sr_measurement *out)
+static void run_rounds(struct measuring *m, struct measure_sums *units, double *unit_channels,
+                       struct measure_sums *total, struct sr_measurement *out)
 {
     const struct sr_measure_settings *s = m->settings;
     double start_s = sr_clock_s();
     bool is_planned = s->error > 0 || s->time_s > 0;
-    uint64_t all = s->samples ? s->samples : is_planned ? UINT64_MAX : DEFAULT_SAMPLES, most = all / m->replicates + (all % m->replicates != 0);
+    uint64_t all = s->samples   ? s->samples
+                   : is_planned ? UINT64_MAX
+                                : DEFAULT_SAMPLES,
+             most = all / m->replicates + (all % m->replicates != 0);
     most = most < most_per_replicate ? most : most_per_replicate;
     struct plan plan = is_planned && most > PILOT ? (struct plan){PILOT, false} : (struct plan){most, true};
     for (m->round = 0;; ++m->round) {
@@ -229,20 +246,29 @@ static void clear(struct sr_measurement *out, const struct measuring *m)
 {
     *out = (struct sr_measurement){.spectrum = out->spectrum};
     for (int i = 0; i < SR_SYSTEM_COUNT; ++i)
-        out->value[i] = (struct sr_quantity){.value = NAN, .u = NAN, .unit = sr_unit_of(m->meter->model->kind, (enum sr_system)i, false)};
+        out->value[i] = (struct sr_quantity){
+            .value = NAN, .u = NAN, .unit = sr_unit_of(m->meter->model->kind, (enum sr_system)i, false)};
     for (int i = 0; i < SR_COLOUR_COUNT; ++i)
         out->colour[i] = (struct sr_quantity){.value = NAN, .u = NAN};
     for (uint32_t k = 0; k < m->settings->spectrometer.count; ++k)
-        out->spectrum[k] = (struct sr_quantity){.value = NAN, .u = NAN, .unit = sr_unit_of(m->meter->model->kind, SR_RADIOMETRIC, true)};
+        out->spectrum[k] = (struct sr_quantity){
+            .value = NAN, .u = NAN, .unit = sr_unit_of(m->meter->model->kind, SR_RADIOMETRIC, true)};
 }
 
-sr_status sr_measure(const struct sr_render_job *job, const struct sr_meter *meter, const struct sr_measure_settings *settings, struct sr_arena *arena,
-                     struct sr_measurement *out, struct sr_error *error)
+sr_status sr_measure(const struct sr_render_job *job, const struct sr_meter *meter,
+                     const struct sr_measure_settings *settings, struct sr_arena *arena, struct sr_measurement *out,
+                     struct sr_error *error)
 {
     struct sr_measure_settings s = *settings;
     s.replicates = s.replicates ? s.replicates : DEFAULT_REPLICATES;
-    struct measuring m = {.job = job, .meter = meter, .settings = &s, .replicates = s.replicates, .channels = MEASURE_BINS + s.spectrometer.count,
-                          .stream = UINT32_MAX - s.stream, .cell = UINT32_MAX, .lambda = job->lambda};
+    struct measuring m = {.job = job,
+                          .meter = meter,
+                          .settings = &s,
+                          .replicates = s.replicates,
+                          .channels = MEASURE_BINS + s.spectrometer.count,
+                          .stream = UINT32_MAX - s.stream,
+                          .cell = UINT32_MAX,
+                          .lambda = job->lambda};
     if (s.spectrometer.count) {
         const struct sr_spectrometer *sp = &s.spectrometer;
         m.lambda.lo = fminf(m.lambda.lo, (float)fmax(1, sp->first - sp->fwhm));
@@ -257,7 +283,8 @@ sr_status sr_measure(const struct sr_render_job *job, const struct sr_meter *met
     uint32_t units = MOST_UNITS * m.replicates;
     struct measure_sums *sums = sr_arena_alloc(&scratch, units * sizeof *sums);
     double *unit_channels = sr_arena_alloc(&scratch, (size_t)units * m.channels * sizeof *unit_channels);
-    struct measure_sums total = {.channels = sr_arena_alloc(&scratch, (size_t)m.replicates * m.channels * sizeof(double))};
+    struct measure_sums total = {.channels =
+                                     sr_arena_alloc(&scratch, (size_t)m.replicates * m.channels * sizeof(double))};
     if (s.spectrometer.count)
         out->spectrum = sr_arena_alloc(arena, s.spectrometer.count * sizeof *out->spectrum);
     if (!sums || !unit_channels || !total.channels || (s.spectrometer.count && !out->spectrum)) {
@@ -277,16 +304,19 @@ sr_status sr_measure(const struct sr_render_job *job, const struct sr_meter *met
     return out->is_complete ? SR_OK : SR_CANCELLED;
 }
 
-struct sr_irradiance sr_render_irradiance(const struct sr_render_job *job, sr_vec3 p, sr_vec3 n, uint32_t samples, uint32_t replicates)
+struct sr_irradiance sr_render_irradiance(const struct sr_render_job *job, sr_vec3 p, sr_vec3 n, uint32_t samples,
+                                          uint32_t replicates)
 {
     struct sr_arena arena = {0};
     struct sr_meter meter = sr_meter_irradiance_at(&arena, p, n);
-    struct sr_measure_settings settings = {.samples = (uint64_t)samples * replicates, .replicates = replicates, .system = SR_PHOTOPIC};
+    struct sr_measure_settings settings = {
+        .samples = (uint64_t)samples * replicates, .replicates = replicates, .system = SR_PHOTOPIC};
     struct sr_measurement m;
     struct sr_error error = {0};
     struct sr_irradiance E = {NAN, NAN, NAN, NAN, replicates - 1}; // until measured: no memory, no number
     if (meter.model && sr_measure(job, &meter, &settings, &arena, &m, &error) == SR_OK)
-        E = (struct sr_irradiance){m.value[SR_PHOTOPIC].value, m.value[SR_PHOTOPIC].u, m.value[SR_RADIOMETRIC].value, m.value[SR_RADIOMETRIC].u, replicates - 1};
+        E = (struct sr_irradiance){m.value[SR_PHOTOPIC].value, m.value[SR_PHOTOPIC].u, m.value[SR_RADIOMETRIC].value,
+                                   m.value[SR_RADIOMETRIC].u, replicates - 1};
     sr_arena_free(&arena);
     return E;
 }

@@ -19,20 +19,21 @@ struct measuring {
     const struct sr_meter *meter;
     const struct sr_measure_settings *settings;
     uint32_t replicates, channels;
-    uint32_t stream, round; // which random numbers
-    uint32_t cell;          // of a map; UINT32_MAX: no map
+    uint32_t stream, round;                            // which random numbers
+    uint32_t cell;                                     // of a map; UINT32_MAX: no map
     enum { AIM_NEVER, AIM_AT_DELTAS, AIM_AT_ALL } aim; // from the meter straight at lights
     struct sr_lambda_range lambda; // [nm] the job's, and what the spectrometer's outer bins reach beyond it
 };
 
 /* One sample: adds to channels; what it was in the system that is looked at. false: not finite, and not added. */
-bool measure_sample(const struct measuring *m, uint32_t replicate, uint32_t sample, struct sr_worker *worker, double *channels, double *looked_at,
-                    bool *is_hit);
+bool measure_sample(const struct measuring *m, uint32_t replicate, uint32_t sample, struct sr_worker *worker,
+                    double *channels, double *looked_at, bool *is_hit);
 /* Adds what arrives at a path's wavelengths to channels; false: not finite, and not added. */
-bool measure_add(const struct measuring *m, sr_spectrum X, const struct sr_wavelengths *w, double *channels, double *looked_at);
+bool measure_add(const struct measuring *m, sr_spectrum X, const struct sr_wavelengths *w, double *channels,
+                 double *looked_at);
 /* Where that sample is taken; false: nowhere. */
-/* Where a meter stands is known to a micrometre or, in scenes smaller than that allows, to eight roundings of their size: a surface there may be
- * on its other side. (A ground to the horizon is no size to go by.) */
+/* Where a meter stands is known to a micrometre or, in scenes smaller than that allows, to eight roundings of their
+ * size: a surface there may be on its other side. (A ground to the horizon is no size to go by.) */
 static inline void measure_settle(const struct sr_scene *scene, struct sr_meter_place *at)
 {
     float off = sr_min(1e-6f, 0x1p-21f * sr_max_component(sr_box_diagonal(sr_scene_bounds(scene)))); // [m]
@@ -40,7 +41,8 @@ static inline void measure_settle(const struct sr_scene *scene, struct sr_meter_
 }
 bool measure_place(const struct measuring *m, uint32_t replicate, uint32_t sample, struct sr_meter_place *at);
 /* Adds samples [begin, end) of a replicate; false: cancelled, the sums are of no use. */
-bool measure_run(const struct measuring *m, uint32_t replicate, uint64_t begin, uint64_t end, struct measure_sums *sums);
+bool measure_run(const struct measuring *m, uint32_t replicate, uint64_t begin, uint64_t end,
+                 struct measure_sums *sums);
 bool measure_is_cancelled(const struct sr_render_job *job);
 /* Settles what all samples have in common. */
 void measure_prepare(struct measuring *m);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Maps: every cell of a rectangle is measured by itself, with its own random numbers and its own error. On a shape, points are
- * drawn by area and sorted into cells by their texture coordinates:
+/* Maps: every cell of a rectangle is measured by itself, with its own random numbers and its own error. On a shape,
+ * points are drawn by area and sorted into cells by their texture coordinates:
  *
  *     E_c = SUM over points in c of weight E / SUM of weight,    of each replicate */
 #include "render/measure.h"
@@ -63,7 +63,8 @@ static void scatter(void *context, uint64_t r)
         struct sr_meter_place at;
         if ((i & 63) == 0 && measure_is_cancelled(m->job))
             return;
-        uint32_t c = measure_place(m, (uint32_t)r, (uint32_t)i, &at) ? m->meter->model->cell_of(m->meter->self, &at) : UINT32_MAX;
+        uint32_t c = measure_place(m, (uint32_t)r, (uint32_t)i, &at) ? m->meter->model->cell_of(m->meter->self, &at)
+                                                                     : UINT32_MAX;
         if (c == UINT32_MAX || !measure_sample(m, (uint32_t)r, (uint32_t)i, &worker, channels, &looked_at, &is_hit))
             continue;
         struct cell *cell = &s->of[r * s->cells + c];
@@ -80,7 +81,8 @@ static sr_status scatter_all(const struct mapping *map, struct sr_error *error)
     s.n = n < 0x1p31 ? (uint64_t)n : (uint64_t)1 << 31;
     struct sr_arena arena = {0};
     if (!(s.of = sr_arena_alloc(&arena, s.cells * R * sizeof *s.of)))
-        return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for %u replicates of a map of %u x %u cells", R, map->image->width, map->image->height);
+        return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for %u replicates of a map of %u x %u cells", R,
+                       map->image->width, map->image->height);
     sr_parallel_for(map->m.job->threads > 0 ? map->m.job->threads : sr_thread_count(), R, scatter, &s);
     for (uint64_t c = 0; c < s.cells; ++c) {
         struct sr_tally tally = {0};
@@ -96,8 +98,8 @@ static sr_status scatter_all(const struct mapping *map, struct sr_error *error)
 
 /* ---- the whole ---- */
 
-sr_status sr_measure_map(const struct sr_render_job *job, const struct sr_meter *meter, const struct sr_measure_settings *settings, struct sr_image **image,
-                         struct sr_error *error)
+sr_status sr_measure_map(const struct sr_render_job *job, const struct sr_meter *meter,
+                         const struct sr_measure_settings *settings, struct sr_image **image, struct sr_error *error)
 {
     struct sr_measure_settings s = *settings;
     s.replicates = s.replicates ? s.replicates : CELL_REPLICATES;
@@ -107,9 +109,11 @@ sr_status sr_measure_map(const struct sr_render_job *job, const struct sr_meter 
     if (!meter->model->raster || meter->model->far)
         return sr_fail(error, SR_ERROR_USAGE, "a meter of kind %s makes no map", meter->model->name);
     if (job->integrator.model == &sr_integrator_quadrature)
-        return sr_fail(error, SR_ERROR_USAGE, "the estimator quadrature reads meters at a point, and a map is a mean over cells; use path");
+        return sr_fail(error, SR_ERROR_USAGE,
+                       "the estimator quadrature reads meters at a point, and a map is a mean over cells; use path");
     if (s.replicates < 2 || s.replicates > MOST_REPLICATES)
-        return sr_fail(error, SR_ERROR_USAGE, "%u replicates: expected 2 to %d", (unsigned)s.replicates, MOST_REPLICATES);
+        return sr_fail(error, SR_ERROR_USAGE, "%u replicates: expected 2 to %d", (unsigned)s.replicates,
+                       MOST_REPLICATES);
     uint32_t width, height;
     meter->model->raster(meter->self, &width, &height);
     struct sr_image *made;
@@ -121,15 +125,23 @@ sr_status sr_measure_map(const struct sr_render_job *job, const struct sr_meter 
     sr_image_set_unit(made, 0, unit);
     sr_image_set_unit(made, 1, unit);
     struct mapping map = {
-        .m = {.cell = UINT32_MAX, .job = job, .meter = meter, .settings = &s, .replicates = s.replicates, .channels = MEASURE_BINS, .stream = s.stream << 26,
+        .m = {.cell = UINT32_MAX,
+              .job = job,
+              .meter = meter,
+              .settings = &s,
+              .replicates = s.replicates,
+              .channels = MEASURE_BINS,
+              .stream = s.stream << 26,
               .lambda = job->lambda},
-        .n = (s.samples + s.replicates - 1) / s.replicates, .image = made,
+        .n = (s.samples + s.replicates - 1) / s.replicates,
+        .image = made,
     };
     measure_prepare(&map.m);
     for (uint64_t i = 0; i < 2 * (uint64_t)width * height; ++i)
         made->floats[i] = NAN; // until measured
     if (!sr_meter_common(meter)->surface_name) {
-        sr_parallel_for(job->threads > 0 ? job->threads : sr_thread_count(), (uint64_t)width * height, measure_cell, &map);
+        sr_parallel_for(job->threads > 0 ? job->threads : sr_thread_count(), (uint64_t)width * height, measure_cell,
+                        &map);
     } else if (scatter_all(&map, error) != SR_OK) {
         sr_image_free(made);
         return error->status;

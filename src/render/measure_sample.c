@@ -3,9 +3,10 @@
  *
  *     reading = INTEGRAL INTEGRAL response(x, wi) L(x, wi) dwi dA
  *
- * estimated twice, by directions in proportion to the response and by directions toward a light, weighed by their densities
- * (Veach 1997, power heuristic). An estimator that does not know receivers is asked along the
- * first kind alone, and lights that no direction meets are added; one that gathers does it all by itself. Paths from the lights are joined to the meter's point at each vertex:
+ * estimated twice, by directions in proportion to the response and by directions toward a light, weighed by their
+ * densities (Veach 1997, power heuristic). An estimator that does not know receivers is asked along the first kind
+ * alone, and lights that no direction meets are added; one that gathers does it all by itself. Paths from the lights
+ * are joined to the meter's point at each vertex:
  *
  *     reading = E[ sum beta f |cos theta| response(wi) / r^2 V / density ] */
 #include "render/measure.h"
@@ -14,14 +15,16 @@
 enum { USE_PLACE = 1 << 24 };
 
 /* Light straight from a light: response L / pdf, with its weight. */
-static sr_spectrum direct(const struct measuring *m, const struct sr_meter_place *at, sr_u4 u, const struct sr_wavelengths *w, struct sr_worker *worker)
+static sr_spectrum direct(const struct measuring *m, const struct sr_meter_place *at, sr_u4 u,
+                          const struct sr_wavelengths *w, struct sr_worker *worker)
 {
     const struct sr_scene *scene = m->job->scene;
     const struct sr_lights *lights = sr_scene_lights(scene);
     uint32_t index;
     float pmf;
     struct sr_light_sample l;
-    if (!sr_lights_pick(lights, &at->x, u[2], &index, &pmf) || !sr_light_draw(lights->lights[index], &at->x, (sr_vec2){u[0], u[1]}, w, &l))
+    if (!sr_lights_pick(lights, &at->x, u[2], &index, &pmf) ||
+        !sr_light_draw(lights->lights[index], &at->x, (sr_vec2){u[0], u[1]}, w, &l))
         return SR_BLACK;
     sr_vec3 wi = sr_to_local(&at->frame, l.wi);
     float response = m->meter->model->response(m->meter->self, wi), pdf = pmf * l.pdf;
@@ -46,8 +49,11 @@ static bool connect(const void *self, sr_vec3 p, float time, sr_vec2 u, struct s
     if (!(r2 > 0))
         return false;
     sr_vec3 wi = sr_scale(1 / distance, to), back = sr_neg(wi);
-    *view = (struct sr_sensor_view){.p = sr_point_offset(&r->at->x, back), .wi = wi, .distance = distance,
-                                    .weight = r->meter->model->response(r->meter->self, sr_to_local(&r->at->frame, back)) / r2};
+    *view = (struct sr_sensor_view){
+        .p = sr_point_offset(&r->at->x, back),
+        .wi = wi,
+        .distance = distance,
+        .weight = r->meter->model->response(r->meter->self, sr_to_local(&r->at->frame, back)) / r2};
     return view->weight != 0;
 }
 
@@ -57,18 +63,20 @@ static void receive(void *user, sr_vec2 raster, sr_spectrum gain, const struct s
     ((struct receiving *)user)->sum += gain;
 }
 
-static sr_spectrum from_lights(const struct measuring *m, const struct sr_meter_place *at, const struct sr_sampler *sampler, struct sr_wavelengths *w,
-                               struct sr_worker *worker)
+static sr_spectrum from_lights(const struct measuring *m, const struct sr_meter_place *at,
+                               const struct sr_sampler *sampler, struct sr_wavelengths *w, struct sr_worker *worker)
 {
     struct receiving r = {m->meter, at, SR_BLACK};
-    struct sr_target target = {.self = &r, .connect = connect, .pixels = 1, .sampler = *sampler, .add = receive, .user = &r};
+    struct sr_target target = {
+        .self = &r, .connect = connect, .pixels = 1, .sampler = *sampler, .add = receive, .user = &r};
     worker->target = &target;
     m->job->integrator.model->splat(m->job->integrator.self, m->job->scene, w, worker);
     worker->target = NULL;
     return r.sum;
 }
 
-static void add_escaped(void *user, enum sr_particle_event event, const struct sr_hit *hit, sr_vec3 d, sr_spectrum flux, const struct sr_wavelengths *w)
+static void add_escaped(void *user, enum sr_particle_event event, const struct sr_hit *hit, sr_vec3 d, sr_spectrum flux,
+                        const struct sr_wavelengths *w)
 {
     (void)hit, (void)d, (void)w;
     if (event == SR_PARTICLE_ESCAPED)
@@ -81,10 +89,14 @@ void measure_prepare(struct measuring *m)
     const struct sr_integrator *integrator = &m->job->integrator;
     bool is_ray = m->meter->model->is_ray && m->meter->model->is_ray(m->meter->self);
     bool is_blind = integrator->model->blind && integrator->model->blind(integrator->self, m->job->scene);
-    m->aim = is_ray ? AIM_NEVER : integrator->model->knows_receivers ? AIM_AT_ALL : is_blind ? AIM_NEVER : AIM_AT_DELTAS;
+    m->aim = is_ray                               ? AIM_NEVER
+             : integrator->model->knows_receivers ? AIM_AT_ALL
+             : is_blind                           ? AIM_NEVER
+                                                  : AIM_AT_DELTAS;
 }
 
-static sr_spectrum estimate(const struct measuring *m, const struct sr_sampler *sampler, struct sr_wavelengths *w, struct sr_worker *worker)
+static sr_spectrum estimate(const struct measuring *m, const struct sr_sampler *sampler, struct sr_wavelengths *w,
+                            struct sr_worker *worker)
 {
     const struct sr_meter_model *model = m->meter->model;
     const void *self = m->meter->self;
@@ -106,7 +118,8 @@ static sr_spectrum estimate(const struct measuring *m, const struct sr_sampler *
     at.x.time = u_place[3];
     bool is_ray = model->is_ray && model->is_ray(self);
     if (integrator->model->gather && !is_ray) {
-        bool is_upper = sr_length2(at.x.n) > 0 && model->response(self, (sr_vec3){0, 0, -1}) == 0; // a surface element, not its net flux
+        bool is_upper = sr_length2(at.x.n) > 0 &&
+                        model->response(self, (sr_vec3){0, 0, -1}) == 0; // a surface element, not its net flux
         struct sr_receiver receiver = {at.x, at.frame, self, model->response, model->sample, model->pdf, is_upper};
         return integrator->model->gather(integrator->self, m->job->scene, &receiver, sampler, w, worker) * at.weight;
     }
@@ -117,16 +130,20 @@ static sr_spectrum estimate(const struct measuring *m, const struct sr_sampler *
         sum = direct(m, &at, u_light, w, worker);
     float response = pdf > 0 ? model->response(self, wi) : 0;
     if (response != 0) {
-        struct sr_path_start start = {.ray = sr_leave(&at.x, sr_to_world(&at.frame, wi)), .receiver = m->aim == AIM_AT_ALL ? &at.x : NULL, .pdf = pdf};
+        struct sr_path_start start = {.ray = sr_leave(&at.x, sr_to_world(&at.frame, wi)),
+                                      .receiver = m->aim == AIM_AT_ALL ? &at.x : NULL,
+                                      .pdf = pdf};
         start.medium = sr_scene_medium_at(m->job->scene, &start.ray);
-        sum += integrator->model->L(integrator->self, m->job->scene, &start, sampler, w, NULL, worker) * (response / pdf);
+        sum +=
+            integrator->model->L(integrator->self, m->job->scene, &start, sampler, w, NULL, worker) * (response / pdf);
     }
     if (integrator->model->splat && !is_ray)
         sum += from_lights(m, &at, sampler, w, worker);
     return sum * at.weight;
 }
 
-bool measure_add(const struct measuring *m, sr_spectrum X, const struct sr_wavelengths *w, double *channels, double *looked_at)
+bool measure_add(const struct measuring *m, sr_spectrum X, const struct sr_wavelengths *w, double *channels,
+                 double *looked_at)
 {
     const struct sr_lambda_range range = m->job->lambda;
     const struct sr_spectrometer *spectrometer = &m->settings->spectrometer;
@@ -147,10 +164,12 @@ bool measure_add(const struct measuring *m, sr_spectrum X, const struct sr_wavel
     return true;
 }
 
-bool measure_sample(const struct measuring *m, uint32_t replicate, uint32_t sample, struct sr_worker *worker, double *channels, double *looked_at, bool *is_hit)
+bool measure_sample(const struct measuring *m, uint32_t replicate, uint32_t sample, struct sr_worker *worker,
+                    double *channels, double *looked_at, bool *is_hit)
 {
     const struct sr_render_job *job = m->job;
-    struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, m->stream, UINT32_MAX - m->round, replicate, sample);
+    struct sr_sampler sampler =
+        sr_sampler_start(job->sampler, job->seed, m->stream, UINT32_MAX - m->round, replicate, sample);
     struct sr_wavelengths w;
     sr_spectrum X = estimate(m, &sampler, &w, worker);
     *is_hit = sr_spectrum_any(X != 0.0f);
@@ -165,7 +184,8 @@ bool measure_sample(const struct measuring *m, uint32_t replicate, uint32_t samp
 bool measure_place(const struct measuring *m, uint32_t replicate, uint32_t sample, struct sr_meter_place *at)
 {
     const struct sr_render_job *job = m->job;
-    struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, m->stream, UINT32_MAX - m->round, replicate, sample);
+    struct sr_sampler sampler =
+        sr_sampler_start(job->sampler, job->seed, m->stream, UINT32_MAX - m->round, replicate, sample);
     sr_u4 u = sr_sample4(&sampler, USE_PLACE);
     bool is_there = m->meter->model->place(m->meter->self, (sr_vec2){u[0], u[1]}, at);
     if (is_there)

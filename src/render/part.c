@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* Parts of a picture: sums of some of its samples, which become the whole picture's to the last bit.
  *
- *     a part = { S(level, k) of the largest nodes that lie within its samples },      S(level, k) = S(level - 1, 2 k) + S(level - 1, 2 k + 1)
+ *     a part = { S(level, k) of the largest nodes that lie within its samples },      S(level, k) = S(level - 1, 2 k) +
+ * S(level - 1, 2 k + 1)
  *
- * The tree is that of block_tree.c. Two halves of a node are joined wherever both are there, so that the order of parts does not
- * matter; a block whose samples are all there is folded as an uncut one. Splats are integers (film/splat.c) and add.
- * Limits: for each pixel a part holds as many sums as it has nodes: 2 log2(n) of a cut block, and one of each whole block. */
+ * The tree is that of block_tree.c. Two halves of a node are joined wherever both are there, so that the order of parts
+ * does not matter; a block whose samples are all there is folded as an uncut one. Splats are integers (film/splat.c)
+ * and add. Limits: for each pixel a part holds as many sums as it has nodes: 2 log2(n) of a cut block, and one of each
+ * whole block. */
 #include "render/part.h"
 
 #include <string.h>
@@ -66,7 +68,8 @@ bool sr_part_node_is_valid(const struct sr_render_part *part, const struct part_
     uint32_t n = sr_part_block_size(part, node->block);
     if (node->begin == 0 && node->count == n)
         return true;
-    return is_power_of_two(node->count) && node->begin % node->count == 0 && node->begin < n && node->count <= n - node->begin;
+    return is_power_of_two(node->count) && node->begin % node->count == 0 && node->begin < n &&
+           node->count <= n - node->begin;
 }
 
 void sr_render_part_destroy(struct sr_render_part *part)
@@ -99,8 +102,14 @@ static void keep(struct part_node *node, size_t pixel, const struct sr_film_bloc
         return;
     const struct sr_first_hit *s = &b->first_sum;
     struct part_first *f = &node->firsts[pixel];
-    *f = (struct part_first){.depth = s->depth, .uv = {s->uv.x, s->uv.y}, .dzdx = s->dzdx, .dzdy = s->dzdy, .material = s->material,
-                             .object = s->object, .hits = b->hits, .samples_seen = b->samples_seen};
+    *f = (struct part_first){.depth = s->depth,
+                             .uv = {s->uv.x, s->uv.y},
+                             .dzdx = s->dzdx,
+                             .dzdy = s->dzdy,
+                             .material = s->material,
+                             .object = s->object,
+                             .hits = b->hits,
+                             .samples_seen = b->samples_seen};
     memcpy(f->square, b->square, sizeof f->square);
     memcpy(f->albedo, s->albedo, sizeof f->albedo);
     memcpy(f->rgb, s->rgb, sizeof f->rgb);
@@ -117,9 +126,15 @@ static struct sr_film_block kept(const struct part_node *node, size_t pixel)
     if (!node->firsts)
         return b;
     const struct part_first *f = &node->firsts[pixel];
-    b.first_sum = (struct sr_first_hit){.n = {f->n[0], f->n[1], f->n[2]}, .ns = {f->ns[0], f->ns[1], f->ns[2]}, .p = {f->p[0], f->p[1], f->p[2]},
-                                        .depth = f->depth, .uv = {f->uv[0], f->uv[1]}, .material = f->material, .object = f->object,
-                                        .dzdx = f->dzdx, .dzdy = f->dzdy};
+    b.first_sum = (struct sr_first_hit){.n = {f->n[0], f->n[1], f->n[2]},
+                                        .ns = {f->ns[0], f->ns[1], f->ns[2]},
+                                        .p = {f->p[0], f->p[1], f->p[2]},
+                                        .depth = f->depth,
+                                        .uv = {f->uv[0], f->uv[1]},
+                                        .material = f->material,
+                                        .object = f->object,
+                                        .dzdx = f->dzdx,
+                                        .dzdy = f->dzdy};
     memcpy(b.first_sum.albedo, f->albedo, sizeof f->albedo);
     memcpy(b.first_sum.rgb, f->rgb, sizeof f->rgb);
     memcpy(b.square, f->square, sizeof b.square);
@@ -131,7 +146,8 @@ static struct sr_film_block kept(const struct part_node *node, size_t pixel)
 /* ---- what a render fills ---- */
 
 /* Calls visit for each node of the samples in range, by block and begin. */
-static void visit_nodes(uint32_t spp, uint32_t blocks, struct sr_render_range range, void (*visit)(void *context, struct part_node node), void *context)
+static void visit_nodes(uint32_t spp, uint32_t blocks, struct sr_render_range range,
+                        void (*visit)(void *context, struct part_node node), void *context)
 {
     for (uint32_t b = 0; b < blocks; ++b) {
         uint64_t first = begin_of(spp, blocks, b), end = begin_of(spp, blocks, b + 1);
@@ -164,7 +180,8 @@ uint64_t sr_part_nodes(uint32_t spp, uint32_t blocks, struct sr_render_range ran
 
 size_t sr_part_node_B(const struct sr_render_job *job)
 {
-    return sizeof(struct part_colour) + (job->with_aov || job->film.is_gbuffer ? sizeof(struct part_first) : 0) + job->film.buckets * sizeof(double);
+    return sizeof(struct part_colour) + (job->with_aov || job->film.is_gbuffer ? sizeof(struct part_first) : 0) +
+           job->film.buckets * sizeof(double);
 }
 
 static void make_node(void *context, struct part_node node)
@@ -176,7 +193,8 @@ static void make_node(void *context, struct part_node node)
         sr_part_node_free(n);
 }
 
-sr_status sr_part_create(const struct sr_render_job *job, uint32_t blocks, struct sr_render_range range, struct sr_render_part **out, struct sr_error *error)
+sr_status sr_part_create(const struct sr_render_job *job, uint32_t blocks, struct sr_render_range range,
+                         struct sr_render_part **out, struct sr_error *error)
 {
     *out = NULL;
     struct sr_render_part *part = sr_alloc(sizeof *part);
@@ -230,7 +248,8 @@ void sr_part_keep(struct sr_render_part *part, uint32_t block, uint32_t x, uint3
         struct part_node *node = &part->nodes[first + i];
         keep(node, pixel, &tree->nodes[i]);
         if (node->buckets)
-            memcpy(node->buckets + pixel * tree->bucket_count, tree->buckets + (size_t)i * tree->bucket_count, tree->bucket_count * sizeof *node->buckets);
+            memcpy(node->buckets + pixel * tree->bucket_count, tree->buckets + (size_t)i * tree->bucket_count,
+                   tree->bucket_count * sizeof *node->buckets);
     }
 }
 
@@ -253,8 +272,8 @@ static void join_nodes(const struct sr_render_part *part, struct part_node *a, s
 
 static bool are_halves(const struct part_node *a, const struct part_node *b)
 {
-    return a->block == b->block && a->count == b->count && is_power_of_two(a->count) && a->begin % (2 * (uint64_t)a->count) == 0 &&
-           a->begin + a->count == b->begin;
+    return a->block == b->block && a->count == b->count && is_power_of_two(a->count) &&
+           a->begin % (2 * (uint64_t)a->count) == 0 && a->begin + a->count == b->begin;
 }
 
 static void remove_node(struct sr_render_part *part, size_t i)
@@ -294,7 +313,8 @@ static bool put_node(struct sr_render_part *part, struct part_node *node)
     size_t i = first_node_of(part, node->block);
     while (i < part->node_count && part->nodes[i].block == node->block && part->nodes[i].begin < node->begin)
         ++i;
-    struct part_node *grown = sr_realloc(part->nodes, part->node_count * sizeof *grown, (part->node_count + 1) * sizeof *grown);
+    struct part_node *grown =
+        sr_realloc(part->nodes, part->node_count * sizeof *grown, (part->node_count + 1) * sizeof *grown);
     if (!grown)
         return false;
     part->nodes = grown;
@@ -331,7 +351,8 @@ static void add_report(struct sr_render_part *to, const struct sr_render_part *f
     uint32_t first_a[4] = {a->dropped_x, a->dropped_y, a->dropped_replicate, a->dropped_sample};
     uint32_t first_b[4] = {b->dropped_x, b->dropped_y, b->dropped_replicate, b->dropped_sample};
     if (tells_dropped(from) && (!tells_dropped(to) || sr_render_is_earlier(first_b, first_a)))
-        a->dropped_x = first_b[0], a->dropped_y = first_b[1], a->dropped_replicate = first_b[2], a->dropped_sample = first_b[3];
+        a->dropped_x = first_b[0], a->dropped_y = first_b[1], a->dropped_replicate = first_b[2],
+        a->dropped_sample = first_b[3];
     a->paths += b->paths;
     a->rays += b->rays;
     a->shadow_rays += b->shadow_rays;
@@ -360,15 +381,18 @@ bool sr_render_part_range(const struct sr_render_part *part, size_t number, stru
 
 sr_status sr_render_part_add(struct sr_render_part *to, struct sr_render_part *from, struct sr_error *error)
 {
-    if (to->spp != from->spp || to->blocks != from->blocks || to->replicates != from->replicates || to->film->width != from->film->width ||
-        to->film->height != from->film->height || to->film->has_aov != from->film->has_aov || to->film->settings.buckets != from->film->settings.buckets ||
-        !to->film->splats != !from->film->splats || (to->film->splats && to->film->splats->groups != from->film->splats->groups))
+    if (to->spp != from->spp || to->blocks != from->blocks || to->replicates != from->replicates ||
+        to->film->width != from->film->width || to->film->height != from->film->height ||
+        to->film->has_aov != from->film->has_aov || to->film->settings.buckets != from->film->settings.buckets ||
+        !to->film->splats != !from->film->splats ||
+        (to->film->splats && to->film->splats->groups != from->film->splats->groups))
         return sr_fail(error, SR_ERROR_INPUT, "the parts are not of one picture");
     struct sr_render_range a, b;
     for (size_t i = 0; sr_render_part_range(to, i, &a); ++i)
         for (size_t k = 0; sr_render_part_range(from, k, &b); ++k)
             if (a.begin < b.end && b.begin < a.end)
-                return sr_fail(error, SR_ERROR_INPUT, "samples %u-%u are in both parts", a.begin > b.begin ? a.begin : b.begin, a.end < b.end ? a.end : b.end);
+                return sr_fail(error, SR_ERROR_INPUT, "samples %u-%u are in both parts",
+                               a.begin > b.begin ? a.begin : b.begin, a.end < b.end ? a.end : b.end);
     add_report(to, from);
     if (to->film->splats)
         add_splats(to->film->splats, from->film->splats, sr_part_pixels(to));

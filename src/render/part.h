@@ -28,12 +28,12 @@ struct part_node {
 };
 
 struct sr_render_part {
-    struct sr_film *film;        // its splats, and the picture once the part has become one
+    struct sr_film *film; // its splats, and the picture once the part has become one
     uint32_t spp, replicates, blocks;
-    struct part_node *nodes;     // by block and begin; they do not overlap
+    struct part_node *nodes; // by block and begin; they do not overlap
     size_t node_count;
     struct sr_render_report report;
-    char *identity, *about;       // NULL: it has not been read
+    char *identity, *about; // NULL: it has not been read
 };
 
 size_t sr_part_pixels(const struct sr_render_part *part);

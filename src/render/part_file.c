@@ -53,13 +53,37 @@ static struct head head_of(const struct sr_render_part *part)
     const struct sr_film_settings *f = &part->film->settings;
     const struct sr_render_report *r = &part->report;
     return (struct head){
-        .width = f->width, .height = f->height, .x0 = f->x0, .x1 = f->x1, .y0 = f->y0, .y1 = f->y1, .space = (int32_t)f->space, .iso = f->iso,
-        .exposure_time = f->exposure_time, .white_balance = f->white_balance, .max_component = f->max_component, .camera1 = f->camera1,
-        .buckets = f->buckets, .lambda_min = f->lambda_min, .lambda_max = f->lambda_max, .bucket_scale = f->bucket_scale,
-        .is_gbuffer = f->is_gbuffer, .has_aov = part->film->has_aov, .spp = part->spp, .replicates = part->replicates, .blocks = part->blocks,
-        .groups = part->film->splats ? part->film->splats->groups : 0, .dropped_x = r->dropped_x, .dropped_y = r->dropped_y,
-        .dropped_sample = r->dropped_sample, .dropped_replicate = r->dropped_replicate, .paths = r->paths, .rays = r->rays,
-        .shadow_rays = r->shadow_rays, .vertices = r->vertices, .dropped = r->dropped,
+        .width = f->width,
+        .height = f->height,
+        .x0 = f->x0,
+        .x1 = f->x1,
+        .y0 = f->y0,
+        .y1 = f->y1,
+        .space = (int32_t)f->space,
+        .iso = f->iso,
+        .exposure_time = f->exposure_time,
+        .white_balance = f->white_balance,
+        .max_component = f->max_component,
+        .camera1 = f->camera1,
+        .buckets = f->buckets,
+        .lambda_min = f->lambda_min,
+        .lambda_max = f->lambda_max,
+        .bucket_scale = f->bucket_scale,
+        .is_gbuffer = f->is_gbuffer,
+        .has_aov = part->film->has_aov,
+        .spp = part->spp,
+        .replicates = part->replicates,
+        .blocks = part->blocks,
+        .groups = part->film->splats ? part->film->splats->groups : 0,
+        .dropped_x = r->dropped_x,
+        .dropped_y = r->dropped_y,
+        .dropped_sample = r->dropped_sample,
+        .dropped_replicate = r->dropped_replicate,
+        .paths = r->paths,
+        .rays = r->rays,
+        .shadow_rays = r->shadow_rays,
+        .vertices = r->vertices,
+        .dropped = r->dropped,
     };
 }
 
@@ -80,7 +104,8 @@ sr_status sr_part_put(struct sr_store_out *out, const struct sr_render_part *par
         if (n->firsts)
             sr_store_put(out, name_of("firsts", i, name), n->firsts, pixels * sizeof *n->firsts, error);
         if (n->buckets)
-            sr_store_put(out, name_of("buckets", i, name), n->buckets, pixels * part->film->settings.buckets * sizeof *n->buckets, error);
+            sr_store_put(out, name_of("buckets", i, name), n->buckets,
+                         pixels * part->film->settings.buckets * sizeof *n->buckets, error);
     }
     return error->status;
 }
@@ -94,12 +119,15 @@ static void put_splats(struct sr_store_out *out, const struct sr_film *film, str
     sr_store_put(out, "splat words", s->words, words_B(film), error);
 }
 
-sr_status sr_render_part_write(const struct sr_render_part *part, const char *identity, const char *about, const char *path, struct sr_error *error)
+sr_status sr_render_part_write(const struct sr_render_part *part, const char *identity, const char *about,
+                               const char *path, struct sr_error *error)
 {
     size_t kinds = 1 + (size_t)part->film->has_aov + (part->film->settings.buckets > 0);
     if (part->node_count * kinds + 8 > SR_STORE_SECTIONS)
-        return sr_fail(error, SR_ERROR_RESOURCE, "%s: the part has %zu sums for each pixel, a file holds %zu: parts of fewer samples were expected", path,
-                       part->node_count, (SR_STORE_SECTIONS - 8) / kinds);
+        return sr_fail(
+            error, SR_ERROR_RESOURCE,
+            "%s: the part has %zu sums for each pixel, a file holds %zu: parts of fewer samples were expected", path,
+            part->node_count, (SR_STORE_SECTIONS - 8) / kinds);
     struct sr_store_out *out;
     if (sr_store_create(path, KIND, &out, error) != SR_OK)
         return error->status;
@@ -125,7 +153,8 @@ static const void *get(const struct sr_store_in *in, const char *name, uint64_t 
     const void *data = sr_store_get(in, name, &B);
     if (data && B == size)
         return data;
-    sr_fail(error, SR_ERROR_INPUT, "%s: \"%s\" has %zu bytes instead of %llu", WORDS, name, data ? B : 0, (unsigned long long)size);
+    sr_fail(error, SR_ERROR_INPUT, "%s: \"%s\" has %zu bytes instead of %llu", WORDS, name, data ? B : 0,
+            (unsigned long long)size);
     return NULL;
 }
 
@@ -157,8 +186,10 @@ static bool is_sound(const struct head *h)
     int64_t w = (int64_t)h->x1 - h->x0, height = (int64_t)h->y1 - h->y0;
     bool has_blocks = h->blocks >= 1 && h->blocks <= h->spp && h->spp <= 1u << 30;
     bool has_replicates = h->replicates == 0 || (h->replicates == h->blocks && h->spp % h->replicates == 0);
-    return w > 0 && height > 0 && w <= 1 << 20 && height <= 1 << 20 && h->space >= 0 && h->space < SR_COLOUR_SPACE_COUNT && h->buckets <= MOST_BUCKETS &&
-           h->is_gbuffer <= 1 && h->has_aov <= 1 && is_camera(h->camera1) && has_blocks && has_replicates && (h->groups == 0 || (h->groups >= 2 && h->groups <= SR_SPLAT_GROUPS));
+    return w > 0 && height > 0 && w <= 1 << 20 && height <= 1 << 20 && h->space >= 0 &&
+           h->space < SR_COLOUR_SPACE_COUNT && h->buckets <= MOST_BUCKETS && h->is_gbuffer <= 1 && h->has_aov <= 1 &&
+           is_camera(h->camera1) && has_blocks && has_replicates &&
+           (h->groups == 0 || (h->groups >= 2 && h->groups <= SR_SPLAT_GROUPS));
 }
 
 static void get_splats(const struct sr_store_in *in, struct sr_film *film, uint32_t groups, struct sr_error *error)
@@ -174,7 +205,8 @@ static void get_splats(const struct sr_store_in *in, struct sr_film *film, uint3
 }
 
 /* One kind of a node's sums. */
-static void get_sums(const struct sr_store_in *in, const char *what, size_t number, void *to, uint64_t size, struct sr_error *error)
+static void get_sums(const struct sr_store_in *in, const char *what, size_t number, void *to, uint64_t size,
+                     struct sr_error *error)
 {
     char name[NAME];
     const void *from = get(in, name_of(what, number, name), size, error);
@@ -193,7 +225,8 @@ static void get_all_sums(const struct sr_store_in *in, struct sr_render_part *pa
         get_sums(in, "buckets", i, n->buckets, pixels * part->film->settings.buckets * sizeof *n->buckets, error);
 }
 
-sr_status sr_part_get(const struct sr_store_in *in, const char *path, struct sr_render_part *part, struct sr_error *error)
+sr_status sr_part_get(const struct sr_store_in *in, const char *path, struct sr_render_part *part,
+                      struct sr_error *error)
 {
     struct sr_error own = {0};
     const struct node_head *nodes = get(in, "nodes", part->node_count * sizeof *nodes, &own);
@@ -207,12 +240,14 @@ sr_status sr_part_get(const struct sr_store_in *in, const char *path, struct sr_
     return own.status ? sr_fail(error, own.status, "%s: %s", path, own.text) : SR_OK;
 }
 
-static void get_node(const struct sr_store_in *in, struct sr_render_part *part, struct node_head head, struct sr_error *error)
+static void get_node(const struct sr_store_in *in, struct sr_render_part *part, struct node_head head,
+                     struct sr_error *error)
 {
     size_t i = part->node_count;
     struct part_node *n = &part->nodes[i];
     *n = (struct part_node){.block = head.block, .begin = head.begin, .count = head.count};
-    bool is_after = i == 0 || n[-1].block < n->block || (n[-1].block == n->block && n[-1].begin + n[-1].count <= n->begin);
+    bool is_after =
+        i == 0 || n[-1].block < n->block || (n[-1].block == n->block && n[-1].begin + n[-1].count <= n->begin);
     if (!is_after || !sr_part_node_is_valid(part, n)) {
         sr_fail(error, SR_ERROR_INPUT, "%s: samples %u+%u of block %u", WORDS, n->begin, n->count, n->block);
         return;
@@ -232,22 +267,44 @@ static void get_part(const struct sr_store_in *in, struct sr_render_part *part, 
     size_t B = 0, count;
     const struct node_head *nodes = sr_store_get(in, "nodes", &B);
     count = B / sizeof *nodes;
-    if (error->status == SR_OK && (!is_sound(h) || !nodes || count == 0 || count > SR_STORE_SECTIONS || B % sizeof *nodes != 0))
+    if (error->status == SR_OK &&
+        (!is_sound(h) || !nodes || count == 0 || count > SR_STORE_SECTIONS || B % sizeof *nodes != 0))
         sr_fail(error, SR_ERROR_INPUT, "%s", WORDS);
     if (error->status != SR_OK)
         return;
-    struct sr_film_settings f = {
-        .width = h->width, .height = h->height, .x0 = h->x0, .x1 = h->x1, .y0 = h->y0, .y1 = h->y1, .space = (enum sr_colour_space_id)h->space, .iso = h->iso,
-        .exposure_time = h->exposure_time, .white_balance = h->white_balance, .max_component = h->max_component, .camera1 = h->camera1, .buckets = h->buckets,
-        .lambda_min = h->lambda_min, .lambda_max = h->lambda_max, .bucket_scale = h->bucket_scale, .is_gbuffer = h->is_gbuffer};
+    struct sr_film_settings f = {.width = h->width,
+                                 .height = h->height,
+                                 .x0 = h->x0,
+                                 .x1 = h->x1,
+                                 .y0 = h->y0,
+                                 .y1 = h->y1,
+                                 .space = (enum sr_colour_space_id)h->space,
+                                 .iso = h->iso,
+                                 .exposure_time = h->exposure_time,
+                                 .white_balance = h->white_balance,
+                                 .max_component = h->max_component,
+                                 .camera1 = h->camera1,
+                                 .buckets = h->buckets,
+                                 .lambda_min = h->lambda_min,
+                                 .lambda_max = h->lambda_max,
+                                 .bucket_scale = h->bucket_scale,
+                                 .is_gbuffer = h->is_gbuffer};
     // the file is as large as the picture, or the picture is not believed
     uint64_t pixels = (uint64_t)((int64_t)h->x1 - h->x0) * (uint64_t)((int64_t)h->y1 - h->y0);
-    if (!get(in, "colours 0", pixels * sizeof(struct part_colour), error) || (h->has_aov && !get(in, "firsts 0", pixels * sizeof(struct part_first), error)) ||
-        (h->buckets && !get(in, "buckets 0", pixels * h->buckets * sizeof(double), error)) || sr_film_create(&f, h->has_aov, &part->film, error) != SR_OK)
+    if (!get(in, "colours 0", pixels * sizeof(struct part_colour), error) ||
+        (h->has_aov && !get(in, "firsts 0", pixels * sizeof(struct part_first), error)) ||
+        (h->buckets && !get(in, "buckets 0", pixels * h->buckets * sizeof(double), error)) ||
+        sr_film_create(&f, h->has_aov, &part->film, error) != SR_OK)
         return;
     part->spp = h->spp, part->replicates = h->replicates, part->blocks = h->blocks;
-    part->report = (struct sr_render_report){.paths = h->paths, .rays = h->rays, .shadow_rays = h->shadow_rays, .vertices = h->vertices, .dropped = h->dropped,
-                                             .dropped_x = h->dropped_x, .dropped_y = h->dropped_y, .dropped_sample = h->dropped_sample,
+    part->report = (struct sr_render_report){.paths = h->paths,
+                                             .rays = h->rays,
+                                             .shadow_rays = h->shadow_rays,
+                                             .vertices = h->vertices,
+                                             .dropped = h->dropped,
+                                             .dropped_x = h->dropped_x,
+                                             .dropped_y = h->dropped_y,
+                                             .dropped_sample = h->dropped_sample,
                                              .dropped_replicate = h->dropped_replicate};
     if (h->groups)
         get_splats(in, part->film, h->groups, error);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A pass over the picture: its workers, alone or as part of a crew. Every tile gets its blocks of samples in order, and any thread may
- * make any of them. */
+/* A pass over the picture: its workers, alone or as part of a crew. Every tile gets its blocks of samples in order, and
+ * any thread may make any of them. */
 #define _POSIX_C_SOURCE 200809L
 #include "render/pass.h"
 
@@ -21,17 +21,20 @@ static void work(void *context, int thread)
 {
     struct run *run = context;
     struct sr_film_block *scratch = run->scratch + (size_t)thread * run->tile * run->tile;
-    double *buckets = run->buckets ? run->buckets + (size_t)thread * run->tile * run->tile * run->picture.response.buckets : NULL;
+    double *buckets =
+        run->buckets ? run->buckets + (size_t)thread * run->tile * run->tile * run->picture.response.buckets : NULL;
     struct sr_block_tree *tree = &run->trees[thread];
     struct sr_splatting splatting = sr_splatting_begin(&run->picture);
     splatting.target.user = &splatting;
     bool splats = run->film->splats != NULL;
-    struct sr_worker worker = {.log = thread == 0 ? run->job->log : NULL, .target = splats ? &splatting.target : NULL, .shared = run->shared};
+    struct sr_worker worker = {
+        .log = thread == 0 ? run->job->log : NULL, .target = splats ? &splatting.target : NULL, .shared = run->shared};
     for (;;) {
         if (splats)
             sr_gate_enter(run);
         uint64_t unit;
-        bool is_done = !sr_run_is_cancelled(run) && next_unit(run, &unit) && sr_run_do_unit(run, unit, scratch, buckets, tree, splats ? &splatting : NULL, &worker);
+        bool is_done = !sr_run_is_cancelled(run) && next_unit(run, &unit) &&
+                       sr_run_do_unit(run, unit, scratch, buckets, tree, splats ? &splatting : NULL, &worker);
         if (splats)
             sr_gate_leave(run);
         if (!is_done)
@@ -45,7 +48,8 @@ static void work(void *context, int thread)
 static void take_batch(void *context, const void *bytes, size_t size)
 {
     struct run *run = context;
-    struct sr_crew_reader reader = {.film = run->film, .crew = run->job->crew, .had = run->had, .blocks_before = run->pass->blocks_before};
+    struct sr_crew_reader reader = {
+        .film = run->film, .crew = run->job->crew, .had = run->had, .blocks_before = run->pass->blocks_before};
     pthread_rwlock_rdlock(&run->film_lock);
     sr_crew_read(&reader, bytes, size);
     sr_run_count(run, &reader.counts);
@@ -73,8 +77,13 @@ static sr_status work_all(struct run *run, int threads, struct sr_error *error)
     }
     if (crew->is_helper && !(run->batches = sr_crew_batches_create(job, run->film, error)))
         return error->status;
-    struct sr_crew_pass pass = {.tiles = run->tiles_x * run->tiles_y, .blocks = run->blocks, .is_dealt_once = job->integrator.model->begin != NULL,
-                                .threads = threads, .run = run, .take = take_batch, .tick = tick};
+    struct sr_crew_pass pass = {.tiles = run->tiles_x * run->tiles_y,
+                                .blocks = run->blocks,
+                                .is_dealt_once = job->integrator.model->begin != NULL,
+                                .threads = threads,
+                                .run = run,
+                                .take = take_batch,
+                                .tick = tick};
     sr_status status = crew->begin(crew->self, &pass, error);
     if (status == SR_OK) {
         sr_parallel(threads, work, run);
@@ -98,15 +107,23 @@ static uint32_t block_of(uint32_t spp, uint32_t blocks, uint32_t sample)
     return b;
 }
 
-static void try_sample(const void *picture, uint32_t x, uint32_t y, const struct sr_sampler *sampler, struct sr_worker *worker)
+static void try_sample(const void *picture, uint32_t x, uint32_t y, const struct sr_sampler *sampler,
+                       struct sr_worker *worker)
 {
     struct sr_picture_sample sample;
     sr_picture_samples(picture, x, y, sampler, 1, false, &sample, worker);
 }
 
-sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render_pass *pass, struct sr_render_report *report, struct sr_error *error)
+sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render_pass *pass,
+                         struct sr_render_report *report, struct sr_error *error)
 {
-    struct run run = {.job = job, .pass = pass, .film = pass->film, .base = *report, .tile = job->tile > 0 ? (uint32_t)job->tile : DEFAULT_TILE, .blocks = pass->blocks, .end_block = pass->blocks};
+    struct run run = {.job = job,
+                      .pass = pass,
+                      .film = pass->film,
+                      .base = *report,
+                      .tile = job->tile > 0 ? (uint32_t)job->tile : DEFAULT_TILE,
+                      .blocks = pass->blocks,
+                      .end_block = pass->blocks};
     if (pass->part) {
         run.first_block = block_of(job->spp, pass->blocks, pass->range.begin);
         run.end_block = block_of(job->spp, pass->blocks, pass->range.end - 1) + 1;
@@ -120,12 +137,15 @@ sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render
     run.scratch = sr_arena_alloc(&arena, (size_t)threads * run.tile * run.tile * sizeof *run.scratch);
     run.trees = sr_arena_alloc(&arena, (size_t)threads * sizeof *run.trees);
     uint32_t buckets = run.picture.response.buckets;
-    run.buckets = buckets ? sr_arena_alloc(&arena, (size_t)threads * run.tile * run.tile * buckets * sizeof *run.buckets) : NULL;
+    run.buckets =
+        buckets ? sr_arena_alloc(&arena, (size_t)threads * run.tile * run.tile * buckets * sizeof *run.buckets) : NULL;
     bool is_resumed = pass->keeper && pass->keeper->kept.is_resumed;
     size_t pixels = (size_t)pass->film->width * pass->film->height;
     run.had = is_resumed ? sr_arena_alloc(&arena, pixels * sizeof *run.had) : NULL;
-    double *tree_buckets = buckets ? sr_arena_alloc(&arena, (size_t)threads * SR_BLOCK_TREE_NODES * buckets * sizeof *tree_buckets) : NULL;
-    if (!run.tile_blocks || !run.scratch || !run.trees || (is_resumed && !run.had) || (buckets && (!run.buckets || !tree_buckets))) {
+    double *tree_buckets =
+        buckets ? sr_arena_alloc(&arena, (size_t)threads * SR_BLOCK_TREE_NODES * buckets * sizeof *tree_buckets) : NULL;
+    if (!run.tile_blocks || !run.scratch || !run.trees || (is_resumed && !run.had) ||
+        (buckets && (!run.buckets || !tree_buckets))) {
         sr_arena_free(&arena);
         return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for %d workers", threads);
     }
@@ -143,15 +163,30 @@ sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render
         run.tile_blocks[i] = run.first_block;
     if (report->dropped) {
         run.has_dropped = true;
-        memcpy(run.first_dropped, (uint32_t[4]){report->dropped_x, report->dropped_y, report->dropped_replicate, report->dropped_sample}, sizeof run.first_dropped);
+        memcpy(run.first_dropped,
+               (uint32_t[4]){report->dropped_x, report->dropped_y, report->dropped_replicate, report->dropped_sample},
+               sizeof run.first_dropped);
     }
     const struct sr_integrator *integrator = &job->integrator;
     struct sr_worker counted = {0};
-    struct sr_picture_plan plan = {.x0 = (uint32_t)job->film.x0, .y0 = (uint32_t)job->film.y0, .width = pass->film->width, .height = pass->film->height,
-                                   .spp = job->spp, .per_replicate = pass->per_replicate, .seed = job->seed, .sampler = job->sampler,
-                                   .law = run.picture.response.law, .jitter_lambda = job->jitter_lambda, .threads = threads,
-                                   .try = try_sample, .picture = &run.picture, .cancel = job->cancel, .counted = &counted, .remark = run.base.remark};
-    if (integrator->model->begin && integrator->model->begin(integrator->self, job->scene, &plan, &run.shared, error) != SR_OK) {
+    struct sr_picture_plan plan = {.x0 = (uint32_t)job->film.x0,
+                                   .y0 = (uint32_t)job->film.y0,
+                                   .width = pass->film->width,
+                                   .height = pass->film->height,
+                                   .spp = job->spp,
+                                   .per_replicate = pass->per_replicate,
+                                   .seed = job->seed,
+                                   .sampler = job->sampler,
+                                   .law = run.picture.response.law,
+                                   .jitter_lambda = job->jitter_lambda,
+                                   .threads = threads,
+                                   .try = try_sample,
+                                   .picture = &run.picture,
+                                   .cancel = job->cancel,
+                                   .counted = &counted,
+                                   .remark = run.base.remark};
+    if (integrator->model->begin &&
+        integrator->model->begin(integrator->self, job->scene, &plan, &run.shared, error) != SR_OK) {
         sr_arena_free(&arena);
         return error->status;
     }

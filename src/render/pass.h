@@ -14,26 +14,27 @@ struct run {
     struct sr_picture picture;
     uint32_t tile, tiles_x, tiles_y, blocks;
     uint32_t first_block, end_block; // that are to be made
-    struct sr_render_report base;  // of what came before this pass
-    uint32_t *had;                 // blocks of each pixel that a resumed render began with; NULL: a new one
+    struct sr_render_report base;    // of what came before this pass
+    uint32_t *had;                   // blocks of each pixel that a resumed render began with; NULL: a new one
     atomic_ullong next_unit;
-    atomic_uint *tile_blocks;      // how many blocks of a tile are in the film
+    atomic_uint *tile_blocks;                                  // how many blocks of a tile are in the film
     atomic_ullong rays, shadow_rays, vertices, paths, dropped; // of what is in the film
     atomic_ullong units_done;
     atomic_bool cancelled;
-    pthread_rwlock_t film_lock;    // stores share it, whoever looks at the whole film has it alone
-    pthread_mutex_t gate_lock;     // guards the gate: where units change the film long before they store, none may be under way
+    pthread_rwlock_t film_lock; // stores share it, whoever looks at the whole film has it alone
+    pthread_mutex_t
+        gate_lock; // guards the gate: where units change the film long before they store, none may be under way
     pthread_cond_t gate;
-    uint32_t active;               // workers that are past the gate
+    uint32_t active; // workers that are past the gate
     bool is_closed;
     pthread_mutex_t progress_lock; // guards the members below; locks are taken in this order: gate, progress, film
     double last_progress_s;
-    uint32_t first_dropped[4];     // x, y, replicate, sample
+    uint32_t first_dropped[4]; // x, y, replicate, sample
     bool has_dropped;
-    struct sr_film_block *scratch; // tile * tile for each thread
-    struct sr_block_tree *trees;   // one for each thread
-    double *buckets;               // as many times the film's buckets; NULL: it has none
-    void *shared;                  // of the integrator's samples
+    struct sr_film_block *scratch;   // tile * tile for each thread
+    struct sr_block_tree *trees;     // one for each thread
+    double *buckets;                 // as many times the film's buckets; NULL: it has none
+    void *shared;                    // of the integrator's samples
     struct sr_crew_batches *batches; // NULL: the film is here, else where a helper's units go
 };
 
@@ -42,10 +43,10 @@ struct run {
 bool sr_run_is_cancelled(struct run *run);
 void sr_run_remember_dropped(struct run *run, uint32_t x, uint32_t y, uint32_t replicate, uint32_t sample);
 void sr_run_count(struct run *run, const struct sr_render_counts *c);
-/* One unit, with a thread's own memory. Cancelled, the pixels that are done come in, and it is false; with splats that takes one pixel's
- * block at most, without no time. */
-bool sr_run_do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratch, double *buckets, struct sr_block_tree *tree,
-                    struct sr_splatting *splatting, struct sr_worker *worker);
+/* One unit, with a thread's own memory. Cancelled, the pixels that are done come in, and it is false; with splats that
+ * takes one pixel's block at most, without no time. */
+bool sr_run_do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratch, double *buckets,
+                    struct sr_block_tree *tree, struct sr_splatting *splatting, struct sr_worker *worker);
 
 /* ---- gate.c ---- */
 

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* What a meter reads, without chance: light that arrives at a point, or that a point reflects, by adaptive cubature.
  *
- *     INTEGRAL g(wi) L(wi) dwi = SUM over lights of  INTEGRAL over the unit square of  g(wi(u)) L V / p(wi(u)) du     [1/nm]
+ *     INTEGRAL g(wi) L(wi) dwi = SUM over lights of  INTEGRAL over the unit square of  g(wi(u)) L V / p(wi(u)) du
+ * [1/nm]
  *
- * g: a meter's response, or f(wo, wi) |cos theta_i| of the surface that it looks at. A light's own draw wi(u), with its density p,
- * is the change of variables: over the light's area or its solid angle, so that V = 1 leaves it smooth. What shines from
- * outside is integrated over the meter's draw, or over cosine-weighted directions. Lights that are delta functions are one
- * evaluation. Each variable by Gauss-Kronrod rules, one within the other (sr_integrate); wavelengths by trapezoids of 1 nm
- * at most. The bound is that of the cubature and the difference of trapezoids of one and of two steps.
- * Limits: light of which no node sees anything is missed, and nothing tells. */
+ * g: a meter's response, or f(wo, wi) |cos theta_i| of the surface that it looks at. A light's own draw wi(u), with its
+ * density p, is the change of variables: over the light's area or its solid angle, so that V = 1 leaves it smooth. What
+ * shines from outside is integrated over the meter's draw, or over cosine-weighted directions. Lights that are delta
+ * functions are one evaluation. Each variable by Gauss-Kronrod rules, one within the other (sr_integrate); wavelengths
+ * by trapezoids of 1 nm at most. The bound is that of the cubature and the difference of trapezoids of one and of two
+ * steps. Limits: light of which no node sees anything is missed, and nothing tells. */
 #include "render/measure.h"
 
 #include <stdio.h>
@@ -37,7 +38,8 @@ struct task {
 
 static sr_spectrum weight_of(const struct task *t, sr_vec3 wi)
 {
-    return t->meter ? SR_ONE * t->meter->model->response(t->meter->self, wi) : sr_bsdf_f(&t->bsdf, t->wo, wi, SR_RADIANCE) * sr_abs_cos_theta(wi);
+    return t->meter ? SR_ONE * t->meter->model->response(t->meter->self, wi)
+                    : sr_bsdf_f(&t->bsdf, t->wo, wi, SR_RADIANCE) * sr_abs_cos_theta(wi);
 }
 
 // directions for light from outside; returns their density [1/sr]
@@ -147,8 +149,8 @@ static void add_exact(struct sr_estimate *sum, sr_spectrum L)
         sum->value[l] += (double)L[l];
 }
 
-/* The surface that a meter sees along its ray, with what glows on the way. Returns why it cannot be integrated, or NULL; is_met:
- * whether there is one that scatters. */
+/* The surface that a meter sees along its ray, with what glows on the way. Returns why it cannot be integrated, or
+ * NULL; is_met: whether there is one that scatters. */
 static const char *look(struct task *t, const struct sr_meter_place *at, struct sr_estimate *sum, bool *is_met)
 {
     sr_vec3 d;
@@ -181,8 +183,8 @@ static const char *look(struct task *t, const struct sr_meter_place *at, struct 
     t->wo = sr_to_local(&t->frame, sr_neg(d));
     uint32_t lobes = sr_bsdf_lobes(&t->bsdf);
     *is_met = lobes != 0 && t->wo.z != 0;
-    return lobes & SR_LOBE_SPECULAR                    ? "the surface that the meter sees is a mirror or clear, in part at least"
-           : t->bsdf.model->is_random                  ? "the surface that the meter sees scatters by a random walk"
+    return lobes & SR_LOBE_SPECULAR   ? "the surface that the meter sees is a mirror or clear, in part at least"
+           : t->bsdf.model->is_random ? "the surface that the meter sees scatters by a random walk"
            : sr_wavelengths_secondary_terminated(&t->w) ? "the surface that the meter sees disperses light"
                                                         : NULL;
 }
@@ -202,10 +204,11 @@ struct job {
         struct sr_estimate y;
         const char *why_not; // NULL: done
         uint64_t evaluations;
-    } *groups;
+    } * groups;
 };
 
-/* Trapezoids as wavelengths of a path, which counts each as X / (SR_LAMBDA_COUNT pdf) [nm]; stride 2: every other one. */
+/* Trapezoids as wavelengths of a path, which counts each as X / (SR_LAMBDA_COUNT pdf) [nm]; stride 2: every other one.
+ */
 static struct sr_wavelengths grid(const struct job *j, uint64_t group, uint32_t stride)
 {
     struct sr_wavelengths w = {.known = NULL};
@@ -223,7 +226,12 @@ static void integrate_group(void *context, uint64_t i)
 {
     const struct job *j = context;
     struct group *g = &j->groups[i];
-    struct task t = {.job = j->m->job, .meter = j->m->meter, .x = j->at.x, .frame = j->at.frame, .w = grid(j, i, 1), .budget = EVALUATIONS};
+    struct task t = {.job = j->m->job,
+                     .meter = j->m->meter,
+                     .x = j->at.x,
+                     .frame = j->at.frame,
+                     .w = grid(j, i, 1),
+                     .budget = EVALUATIONS};
     g->y = (struct sr_estimate){0};
     g->w = t.w;
     bool is_met = true;
@@ -235,7 +243,8 @@ static void integrate_group(void *context, uint64_t i)
 }
 
 /* Sums over the groups: channels by one step, by two, and of the bounds. */
-static bool sum_groups(const struct job *j, uint32_t count, double *fine, double *coarse, double *bound, uint64_t *evaluations)
+static bool sum_groups(const struct job *j, uint32_t count, double *fine, double *coarse, double *bound,
+                       uint64_t *evaluations)
 {
     bool is_finite = true;
     for (uint32_t i = 0; i < count; ++i) {
@@ -246,7 +255,8 @@ static bool sum_groups(const struct job *j, uint32_t count, double *fine, double
             e[l] = (float)j->groups[i].y.error[l];
         }
         struct sr_wavelengths w2 = grid(j, i, 2);
-        is_finite &= measure_add(j->m, X, &j->groups[i].w, fine, &looked_at) && measure_add(j->m, X, &w2, coarse, &looked_at) &&
+        is_finite &= measure_add(j->m, X, &j->groups[i].w, fine, &looked_at) &&
+                     measure_add(j->m, X, &w2, coarse, &looked_at) &&
                      measure_add(j->m, e, &j->groups[i].w, bound, &looked_at);
         *evaluations += j->groups[i].evaluations;
     }
@@ -273,8 +283,11 @@ static void set_colours(const double xyz[3], const double bound[3], struct sr_me
             u2[i] += (moved[i] - c[i]) * (moved[i] - c[i]);
     }
     for (int i = 0; i < SR_COLOUR_COUNT; ++i)
-        out->colour[i] = (struct sr_quantity){.value = c[i], .u = sqrt(u2[i]), .degrees = INFINITY,
-                                              .unit = i <= SR_COLOUR_Z ? out->value[SR_PHOTOPIC].unit : (struct sr_unit){.second = 0}};
+        out->colour[i] = (struct sr_quantity){.value = c[i],
+                                              .u = sqrt(u2[i]),
+                                              .degrees = INFINITY,
+                                              .unit = i <= SR_COLOUR_Z ? out->value[SR_PHOTOPIC].unit
+                                                                       : (struct sr_unit){.second = 0}};
 }
 
 /* ---- the whole ---- */
@@ -290,14 +303,16 @@ static const char *refusal(const struct measuring *m, int32_t max_depth, struct 
     measure_settle(m->job->scene, at);
     *is_ray = model->is_ray && model->is_ray(m->meter->self);
     if (max_depth > (*is_ray ? 1 : 0))
-        return *is_ray ? "light that is reflected more than once is asked for (quadrature,maxdepth=1 takes one reflection)"
-                       : "light that has been reflected is asked for (quadrature,maxdepth=0 takes what comes straight from lights)";
+        return *is_ray
+                   ? "light that is reflected more than once is asked for (quadrature,maxdepth=1 takes one reflection)"
+                   : "light that has been reflected is asked for (quadrature,maxdepth=0 takes what comes straight from lights)";
     const struct sr_lights *lights = sr_scene_lights(m->job->scene);
     for (uint32_t i = 0; i < lights->count; ++i) {
         struct sr_light light = lights->lights[i];
         if (light.model == &sr_light_portal)
             return "the sky shines through a portal, whose edges no rule knows";
-        if (light.model->is_infinite && !light.model->is_delta && ((const struct sr_light_common *)light.self)->texels.width)
+        if (light.model->is_infinite && !light.model->is_delta &&
+            ((const struct sr_light_common *)light.self)->texels.width)
             return "the sky is an image, whose small bright parts no rule would be sure to meet";
     }
     return NULL;
@@ -305,12 +320,13 @@ static const char *refusal(const struct measuring *m, int32_t max_depth, struct 
 
 static sr_status refuse(const char *why, struct sr_error *error)
 {
-    return sr_fail(error, SR_ERROR_USAGE, "the estimator quadrature integrates over the directions at one point, and %s; use path", why);
+    return sr_fail(error, SR_ERROR_USAGE,
+                   "the estimator quadrature integrates over the directions at one point, and %s; use path", why);
 }
 
 /* One grid of wavelengths; sums: fine, coarse and bound, m->channels each. */
-static sr_status integrate_range(struct job *j, struct sr_lambda_range range, struct sr_arena *scratch, double *sums, struct sr_measurement *out,
-                                 struct sr_error *error)
+static sr_status integrate_range(struct job *j, struct sr_lambda_range range, struct sr_arena *scratch, double *sums,
+                                 struct sr_measurement *out, struct sr_error *error)
 {
     uint32_t channels = j->m->channels, intervals = 2 * (uint32_t)fmax(4, ceil((double)(range.hi - range.lo) / 2));
     j->range = range;
@@ -345,17 +361,21 @@ sr_status measure_by_quadrature(const struct measuring *m, struct sr_measurement
         return refuse(why_not, error);
     double start_s = sr_clock_s();
     struct sr_arena scratch = {0};
-    double *sums = sr_arena_alloc(&scratch, 3 * (size_t)m->channels * sizeof *sums), *bound = sums + 2 * (size_t)m->channels;
-    sr_status status = sums ? integrate_range(&j, m->job->lambda, &scratch, sums, out, error) : sr_fail(error, SR_ERROR_RESOURCE, "not enough memory to measure");
+    double *sums = sr_arena_alloc(&scratch, 3 * (size_t)m->channels * sizeof *sums),
+           *bound = sums + 2 * (size_t)m->channels;
+    sr_status status = sums ? integrate_range(&j, m->job->lambda, &scratch, sums, out, error)
+                            : sr_fail(error, SR_ERROR_RESOURCE, "not enough memory to measure");
     if (status == SR_OK) {
         for (int i = 0; i < SR_SYSTEM_COUNT; ++i)
             set(&out->value[i], sums[i], bound[i]);
         if (m->settings->with_colour)
-            set_colours((double[]){sums[MEASURE_X], sums[SR_PHOTOPIC], sums[MEASURE_Z]}, (double[]){bound[MEASURE_X], bound[SR_PHOTOPIC], bound[MEASURE_Z]}, out);
+            set_colours((double[]){sums[MEASURE_X], sums[SR_PHOTOPIC], sums[MEASURE_Z]},
+                        (double[]){bound[MEASURE_X], bound[SR_PHOTOPIC], bound[MEASURE_Z]}, out);
     }
     const struct sr_quantity *q = &out->value[m->settings->system];
     double share = status == SR_OK ? bound[m->settings->system] / fabs(q->value) : 0;
-    if (status == SR_OK && m->settings->spectrometer.count) { // whose bins may reach beyond what all else is summed over
+    if (status == SR_OK &&
+        m->settings->spectrometer.count) { // whose bins may reach beyond what all else is summed over
         status = integrate_range(&j, m->lambda, &scratch, sums, out, error);
         for (uint32_t k = 0; status == SR_OK && k < m->settings->spectrometer.count; ++k)
             set(&out->spectrum[k], sums[MEASURE_BINS + k], bound[MEASURE_BINS + k]);
@@ -370,10 +390,12 @@ sr_status measure_by_quadrature(const struct measuring *m, struct sr_measurement
     if (out->hits == 0)
         snprintf(out->remarks[out->remark_count++], sizeof out->remarks[0], "no node of the cubature has found light");
     else if (share > 10 * (double)j.settings.tolerance)
-        snprintf(out->remarks[out->remark_count++], sizeof out->remarks[0],
-                 "the bound of the error is %.1g of the reading where %.1g was aimed at: the integrand has edges, or wavelengths between which light changes",
-                 share, (double)j.settings.tolerance);
+        snprintf(
+            out->remarks[out->remark_count++], sizeof out->remarks[0],
+            "the bound of the error is %.1g of the reading where %.1g was aimed at: the integrand has edges, or wavelengths between which light changes",
+            share, (double)j.settings.tolerance);
     if (out->dropped)
-        snprintf(out->remarks[out->remark_count++], sizeof out->remarks[0], "some values were not finite and count as nothing");
+        snprintf(out->remarks[out->remark_count++], sizeof out->remarks[0],
+                 "some values were not finite and count as nothing");
     return SR_OK;
 }

@@ -16,19 +16,29 @@ static sr_status check(const struct sr_render_job *job, struct sr_error *error)
     if (job->spp < 1)
         return sr_fail(error, SR_ERROR_USAGE, "at least one sample per pixel is needed");
     if (job->integrator.model == &sr_integrator_quadrature)
-        return sr_fail(error, SR_ERROR_USAGE, "the estimator quadrature reads meters and makes no pictures: a pixel is an integral of more than two "
-                                              "dimensions; use path");
+        return sr_fail(
+            error, SR_ERROR_USAGE,
+            "the estimator quadrature reads meters and makes no pictures: a pixel is an integral of more than two "
+            "dimensions; use path");
     if (job->integrator.model->splat && !job->sensor.model->connect)
-        return sr_fail(error, SR_ERROR_USAGE, "the estimator %s needs to know which ray of the sensor meets a given point, and the sensor %s cannot say; use path or bdpt",
-                       job->integrator.model->name, job->sensor.model->name);
+        return sr_fail(
+            error, SR_ERROR_USAGE,
+            "the estimator %s needs to know which ray of the sensor meets a given point, and the sensor %s cannot say; use path or bdpt",
+            job->integrator.model->name, job->sensor.model->name);
     if (job->integrator.model->splat && job->film.buckets)
-        return sr_fail(error, SR_ERROR_USAGE, "the estimator %s brings light to the picture as colours, which a film of spectra cannot take; use path or bdpt",
-                       job->integrator.model->name);
+        return sr_fail(
+            error, SR_ERROR_USAGE,
+            "the estimator %s brings light to the picture as colours, which a film of spectra cannot take; use path or bdpt",
+            job->integrator.model->name);
     if (job->adaptive.is_on && (has_splats(job) || job->integrator.model->begin))
-        return sr_fail(error, SR_ERROR_USAGE, "the estimator %s works on the whole picture at a time, and cannot spend samples on some pixels alone",
-                       job->integrator.model->name);
+        return sr_fail(
+            error, SR_ERROR_USAGE,
+            "the estimator %s works on the whole picture at a time, and cannot spend samples on some pixels alone",
+            job->integrator.model->name);
     if (!job->adaptive.is_on && (job->replicates == 1 || (job->replicates && job->spp % job->replicates != 0)))
-        return sr_fail(error, SR_ERROR_USAGE, "%u samples per pixel cannot be split into %u replicates of equal size (2 or more)", job->spp, job->replicates);
+        return sr_fail(error, SR_ERROR_USAGE,
+                       "%u samples per pixel cannot be split into %u replicates of equal size (2 or more)", job->spp,
+                       job->replicates);
     return SR_OK;
 }
 
@@ -36,7 +46,8 @@ static struct sr_render_pass pass_of(const struct sr_render_job *job)
 {
     // where samples of a number share something over the whole picture, all pixels take them one after the other
     uint32_t blocks = job->spp < ORDINARY_BLOCKS || job->integrator.model->by_turns ? job->spp : ORDINARY_BLOCKS;
-    return (struct sr_render_pass){.share_end = 1, .blocks = job->replicates ? job->replicates : blocks,
+    return (struct sr_render_pass){.share_end = 1,
+                                   .blocks = job->replicates ? job->replicates : blocks,
                                    .per_replicate = job->replicates ? job->spp / job->replicates : 0};
 }
 
@@ -45,7 +56,8 @@ static void count_lost_splats(const struct sr_film *film, struct sr_render_repor
     report->dropped += film->splats ? film->splats->dropped : 0;
 }
 
-sr_status sr_render(const struct sr_render_job *wanted, struct sr_film **film, struct sr_render_report *report, struct sr_error *error)
+sr_status sr_render(const struct sr_render_job *wanted, struct sr_film **film, struct sr_render_report *report,
+                    struct sr_error *error)
 {
     struct sr_render_job own = *wanted, *job = &own;
     own.with_aov |= own.film.is_gbuffer;
@@ -86,8 +98,8 @@ double sr_render_samples_B(const struct sr_render_job *job, struct sr_render_ran
     return (double)sr_part_nodes(job->spp, pass_of(job).blocks, range) * (double)sr_part_node_B(job);
 }
 
-sr_status sr_render_samples(const struct sr_render_job *wanted, struct sr_render_range range, struct sr_render_part **part, struct sr_render_report *report,
-                            struct sr_error *error)
+sr_status sr_render_samples(const struct sr_render_job *wanted, struct sr_render_range range,
+                            struct sr_render_part **part, struct sr_render_report *report, struct sr_error *error)
 {
     struct sr_render_job own = *wanted, *job = &own;
     own.with_aov |= own.film.is_gbuffer;
@@ -96,11 +108,16 @@ sr_status sr_render_samples(const struct sr_render_job *wanted, struct sr_render
     if (check(job, error) != SR_OK)
         return error->status;
     if (job->adaptive.is_on)
-        return sr_fail(error, SR_ERROR_USAGE, "adaptive sampling decides by the values of all samples which ones follow: its pictures cannot be made in parts");
+        return sr_fail(
+            error, SR_ERROR_USAGE,
+            "adaptive sampling decides by the values of all samples which ones follow: its pictures cannot be made in parts");
     if (job->crew)
-        return sr_fail(error, SR_ERROR_USAGE, "a range of samples is made by one process: parts are for processes that do not know each other");
+        return sr_fail(
+            error, SR_ERROR_USAGE,
+            "a range of samples is made by one process: parts are for processes that do not know each other");
     if (range.begin >= range.end || range.end > job->spp)
-        return sr_fail(error, SR_ERROR_USAGE, "samples %u-%u: a range within 0-%u was expected", range.begin, range.end, job->spp);
+        return sr_fail(error, SR_ERROR_USAGE, "samples %u-%u: a range within 0-%u was expected", range.begin, range.end,
+                       job->spp);
     struct sr_render_pass pass = pass_of(job);
     pass.range = range;
     sr_status status = sr_part_create(job, pass.blocks, range, &pass.part, error);

@@ -38,13 +38,15 @@ bool sr_run_is_cancelled(struct run *run)
 /* Of a block's samples begin <= i < end, those that the pass is to take: all, or those of a part. */
 static void clip(const struct sr_render_pass *pass, uint64_t block_begin, uint32_t *begin, uint32_t *end)
 {
-    int64_t lo = (int64_t)pass->range.begin - (int64_t)block_begin, hi = (int64_t)pass->range.end - (int64_t)block_begin;
+    int64_t lo = (int64_t)pass->range.begin - (int64_t)block_begin,
+            hi = (int64_t)pass->range.end - (int64_t)block_begin;
     *begin = lo > *begin ? (uint32_t)lo : *begin;
     *end = hi < *end ? (uint32_t)hi : *end;
 }
 
 /* The samples of one pixel in one block; false: cancelled, nothing of it counts. */
-static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, struct sr_block_tree *tree, struct sr_splatting *splatting, struct sr_worker *worker)
+static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, struct sr_block_tree *tree,
+                       struct sr_splatting *splatting, struct sr_worker *worker)
 {
     const struct sr_render_job *job = run->job;
     const struct sr_render_pass *pass = run->pass;
@@ -98,7 +100,8 @@ static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, 
     return tree->next == to - begin;
 }
 
-/* Blocks of a tile go in by their order; false: cancelled before. The one before is being made by a thread that does not wait for us. */
+/* Blocks of a tile go in by their order; false: cancelled before. The one before is being made by a thread that does
+ * not wait for us. */
 static bool wait_for_turn(struct run *run, uint32_t tile, uint32_t block)
 {
     while (atomic_load_explicit(&run->tile_blocks[tile], memory_order_acquire) != block) {
@@ -112,11 +115,13 @@ static bool wait_for_turn(struct run *run, uint32_t tile, uint32_t block)
 /* Whether the pixel's block came from a checkpoint. */
 static bool is_there(const struct run *run, uint32_t x, uint32_t y, uint32_t block)
 {
-    return SR_UNLIKELY(run->had != NULL) && run->had[(size_t)y * run->film->width + x] > run->pass->blocks_before + block - run->first_block;
+    return SR_UNLIKELY(run->had != NULL) &&
+           run->had[(size_t)y * run->film->width + x] > run->pass->blocks_before + block - run->first_block;
 }
 
 /* The unit's pixels go into the film, as many as are done. */
-static void store_unit(struct run *run, const struct sr_crew_unit *u, uint32_t done, const struct sr_film_block *blocks, const double *buckets)
+static void store_unit(struct run *run, const struct sr_crew_unit *u, uint32_t done, const struct sr_film_block *blocks,
+                       const double *buckets)
 {
     uint32_t width = u->x1 - u->x0;
     for (uint32_t i = 0; i < done; ++i) {
@@ -153,10 +158,13 @@ static double thread_clock_s(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-bool sr_run_do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratch, double *buckets, struct sr_block_tree *tree, struct sr_splatting *splatting, struct sr_worker *worker)
+bool sr_run_do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratch, double *buckets,
+                    struct sr_block_tree *tree, struct sr_splatting *splatting, struct sr_worker *worker)
 {
-    uint32_t tiles = run->tiles_x * run->tiles_y, tile = (uint32_t)(unit % tiles), block = run->first_block + (uint32_t)(unit / tiles);
-    struct sr_crew_unit u = {.tile = tile, .block = block, .x0 = tile % run->tiles_x * run->tile, .y0 = tile / run->tiles_x * run->tile};
+    uint32_t tiles = run->tiles_x * run->tiles_y, tile = (uint32_t)(unit % tiles),
+             block = run->first_block + (uint32_t)(unit / tiles);
+    struct sr_crew_unit u = {
+        .tile = tile, .block = block, .x0 = tile % run->tiles_x * run->tile, .y0 = tile / run->tiles_x * run->tile};
     u.x1 = u.x0 + run->tile < run->film->width ? u.x0 + run->tile : run->film->width;
     u.y1 = u.y0 + run->tile < run->film->height ? u.y0 + run->tile : run->film->height;
     uint32_t left = (uint32_t)run->film->settings.x0, top = (uint32_t)run->film->settings.y0;

@@ -4,8 +4,8 @@
  *     alias: outcome = frac(n u) < threshold[i] ? i : other[i],  i = floor(n u);    pmf_i = w_i / SUM w      [1]
  *     piecewise: F(x) = INTEGRAL f,  x = F^-1(u),  pdf = f / INTEGRAL f                                [1/length]
  *
- * M. Vose, A Linear Algorithm for Generating Random Numbers with a Given Distribution, 1991. Weights that are negative or
- * no numbers count as zero. u has 24 bits, hence probabilities are granted in steps of 2^-24. */
+ * M. Vose, A Linear Algorithm for Generating Random Numbers with a Given Distribution, 1991. Weights that are negative
+ * or no numbers count as zero. u has 24 bits, hence probabilities are granted in steps of 2^-24. */
 #include "sample/sample.h"
 
 static double weight(float w)
@@ -80,7 +80,8 @@ uint32_t sr_alias_sample(const struct sr_alias *a, float u, float *pmf, float *u
     if (pmf)
         *pmf = a->pmf[outcome];
     if (u_remapped)
-        *u_remapped = sr_min(here ? fraction / threshold : (fraction - threshold) / (1 - threshold), SR_ONE_MINUS_EPSILON);
+        *u_remapped =
+            sr_min(here ? fraction / threshold : (fraction - threshold) / (1 - threshold), SR_ONE_MINUS_EPSILON);
     return outcome;
 }
 
@@ -116,12 +117,14 @@ static uint32_t search(const float *cdf, uint32_t first, uint32_t last, float u)
 static void make_guide(struct sr_piecewise1 *d)
 {
     for (uint32_t i = 0; i < d->count + 2; ++i)
-        d->guide[i] = (uint16_t)search(d->cdf, i ? d->guide[i - 1] : 0, d->count - 1, (float)(((double)i - 0.5) / d->count));
+        d->guide[i] =
+            (uint16_t)search(d->cdf, i ? d->guide[i - 1] : 0, d->count - 1, (float)(((double)i - 0.5) / d->count));
 }
 
 enum { MOST_GUIDED = 65536 };
 
-bool sr_piecewise1_build(struct sr_arena *arena, const float *f, uint32_t count, float lo, float hi, struct sr_piecewise1 *d)
+bool sr_piecewise1_build(struct sr_arena *arena, const float *f, uint32_t count, float lo, float hi,
+                         struct sr_piecewise1 *d)
 {
     *d = (struct sr_piecewise1){.count = count, .lo = lo, .hi = hi, .per_unit = (float)count / (hi - lo)};
     d->f = count ? sr_arena_alloc(arena, count * sizeof(float)) : NULL;
@@ -150,7 +153,8 @@ float sr_piecewise1_sample(const struct sr_piecewise1 *d, float u, float *pdf, u
 {
     // the last cell that begins at or below u: it ends above u, so it is not empty
     uint32_t i = (uint32_t)(u * (float)d->count);
-    uint32_t first = d->guide && i < d->count ? search(d->cdf, d->guide[i], d->guide[i + 2], u) : search(d->cdf, 0, d->count - 1, u);
+    uint32_t first =
+        d->guide && i < d->count ? search(d->cdf, d->guide[i], d->guide[i + 2], u) : search(d->cdf, 0, d->count - 1, u);
     float within = (u - d->cdf[first]) / (d->cdf[first + 1] - d->cdf[first]);
     float x = d->lo + ((float)first + within) / d->per_unit;
     // rounding at an edge must not carry x to a neighbour whose density differs
@@ -181,8 +185,13 @@ bool sr_piecewise2_build(struct sr_arena *arena, const float *f, uint32_t nx, ui
     float *means = sr_alloc(rows * sizeof(float));
     bool ok = d->conditional && values && cdf && means && (guides || nx > MOST_GUIDED);
     for (size_t y = 0; ok && y < rows; ++y) {
-        d->conditional[y] = (struct sr_piecewise1){.count = nx, .lo = 0, .hi = 1, .per_unit = (float)nx, .f = values + y * columns,
-                                                      .cdf = cdf + y * (columns + 1), .guide = guides ? guides + y * (columns + 2) : NULL};
+        d->conditional[y] = (struct sr_piecewise1){.count = nx,
+                                                   .lo = 0,
+                                                   .hi = 1,
+                                                   .per_unit = (float)nx,
+                                                   .f = values + y * columns,
+                                                   .cdf = cdf + y * (columns + 1),
+                                                   .guide = guides ? guides + y * (columns + 2) : NULL};
         integrate(f + y * columns, &d->conditional[y]);
         if (guides)
             make_guide(&d->conditional[y]);

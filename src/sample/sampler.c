@@ -61,7 +61,8 @@ uint32_t sr_rng_u32(struct sr_rng *rng)
 struct sr_sampler sr_sampler_start(enum sr_sampler_kind kind, uint32_t seed, uint32_t pixel_x, uint32_t pixel_y,
                                    uint32_t replicate, uint32_t sample)
 {
-    uint32_t key = sr_hash_combine(sr_hash_combine(sr_hash_combine(sr_hash_u32(seed ^ 0x2545f491u), pixel_x), pixel_y), replicate);
+    uint32_t key =
+        sr_hash_combine(sr_hash_combine(sr_hash_combine(sr_hash_u32(seed ^ 0x2545f491u), pixel_x), pixel_y), replicate);
     return (struct sr_sampler){.key = key, .sample = sample, .kind = kind};
 }
 

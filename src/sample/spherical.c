@@ -3,13 +3,13 @@
  *
  * Triangle: with edges e1, e2, corners A, B, C seen from p, lengths a, b, c,
  *     tan(Omega / 2) = A.(e1 x e2) / (a b c + (A.B) c + (B.C) a + (C.A) b)
- * A point C' at angle s from A on the arc AC cuts off the share u of the area where, with t the unit tangent of the arc at
- * A, T = tan(u Omega / 2), V = t.(A x B), k = 1 + A.B (all of unit length),   tan(s / 2) = T k / (V - T B.t).
- * The height within B C' is linear in 1 - cos. All is kept as differences from A or B: small triangles lose no digits.
+ * A point C' at angle s from A on the arc AC cuts off the share u of the area where, with t the unit tangent of the arc
+ * at A, T = tan(u Omega / 2), V = t.(A x B), k = 1 + A.B (all of unit length),   tan(s / 2) = T k / (V - T B.t). The
+ * height within B C' is linear in 1 - cos. All is kept as differences from A or B: small triangles lose no digits.
  *
- * Rectangle: at distance z, in coordinates of its plane, with beta_i = y_i / sqrt(y_i^2 + z^2) and sigma = x / sqrt(x^2 + z^2),
- *     Omega(x0 … x) = theta(x) - theta(x0),    theta = asin(beta_1 sigma) - asin(beta_0 sigma)
- * which inverts to   sigma = sin theta / sqrt(beta_0^2 + beta_1^2 - 2 beta_0 beta_1 cos theta);   y is linear in its sine.
+ * Rectangle: at distance z, in coordinates of its plane, with beta_i = y_i / sqrt(y_i^2 + z^2) and sigma = x / sqrt(x^2
+ * + z^2), Omega(x0 … x) = theta(x) - theta(x0),    theta = asin(beta_1 sigma) - asin(beta_0 sigma) which inverts to
+ * sigma = sin theta / sqrt(beta_0^2 + beta_1^2 - 2 beta_0 beta_1 cos theta);   y is linear in its sine.
  *
  * The maps are those of J. Arvo, Stratified Sampling of Spherical Triangles, 1995, and C. Urena, M. Fajardo & A. King,
  * An Area-Preserving Parametrization for Spherical Rectangles, 2013, solved without inverse cosines; the solid angle
@@ -83,7 +83,8 @@ void sr_spherical_triangle_sample(const sr_vec3 v[3], sr_vec3 p, sr_vec2 u, floa
     float P = S * (1 + sr_dot(a, b)), Q = sr_max(0, C * height - S * sr_dot(ab, along));
     float size = P * P + Q * Q;
     // u.x = 0 leaves P = 0; where the arc is too short for floats, so is the triangle
-    sr_vec3 ac2 = size > 0 ? sr_add(sr_scale(-2 * P * P / size, a), sr_scale(2 * P * Q / size, along)) : (sr_vec3){0, 0, 0};
+    sr_vec3 ac2 =
+        size > 0 ? sr_add(sr_scale(-2 * P * P / size, a), sr_scale(2 * P * Q / size, along)) : (sr_vec3){0, 0, 0};
 
     sr_vec3 chord = sr_sub(ac2, ab); // from b to c'
     float fall = 0.5f * u.y * sr_length2(chord);
@@ -230,7 +231,8 @@ sr_vec2 sr_spherical_rectangle_invert(sr_vec3 p, sr_vec3 s, sr_vec3 ex, sr_vec3 
     struct rectangle r;
     if (!see_rectangle(p, s, ex, ey, &r))
         return (sr_vec2){0.5f, 0.5f};
-    double d[3] = {(double)on_rectangle.x - (double)s.x, (double)on_rectangle.y - (double)s.y, (double)on_rectangle.z - (double)s.z};
+    double d[3] = {(double)on_rectangle.x - (double)s.x, (double)on_rectangle.y - (double)s.y,
+                   (double)on_rectangle.z - (double)s.z};
     double x = r.x0 + dot(ex, d) / r.width2 * (r.x1 - r.x0), y = r.y0 + dot(ey, d) / r.height2 * (r.y1 - r.y0);
     double d2 = x * x + r.z * r.z, sin_t, cos_t;
     theta(&r, x / sqrt(d2), &sin_t, &cos_t);

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* The acceleration structure: one Embree scene for the world and one for each object, robust traversal.
  *
- * Triangles are Embree's own; patches and quadrics are user geometry met by their exact equations. Alpha is a filter. Where an
- * object has many triangles and most follow a neighbour, Embree gets them by pairs, as quads, each half of which it meets by
- * the very formula for triangles: two thirds of the memory, half the time to build, and rays are no slower. */
+ * Triangles are Embree's own; patches and quadrics are user geometry met by their exact equations. Alpha is a filter.
+ * Where an object has many triangles and most follow a neighbour, Embree gets them by pairs, as quads, each half of
+ * which it meets by the very formula for triangles: two thirds of the memory, half the time to build, and rays are no
+ * slower. */
 #include "scene/private.h"
 
 #include <stdio.h>
@@ -22,8 +23,12 @@ static void user_bounds(const struct RTCBoundsFunctionArguments *a)
 {
     const struct placed_shape *s = a->geometryUserPtr;
     struct sr_box b = s->shape.model->bounds(s->shape.self, a->primID);
-    *a->bounds_o = (struct RTCBounds){.lower_x = b.lo.x, .lower_y = b.lo.y, .lower_z = b.lo.z,
-                                      .upper_x = b.hi.x, .upper_y = b.hi.y, .upper_z = b.hi.z};
+    *a->bounds_o = (struct RTCBounds){.lower_x = b.lo.x,
+                                      .lower_y = b.lo.y,
+                                      .lower_z = b.lo.z,
+                                      .upper_x = b.hi.x,
+                                      .upper_y = b.hi.y,
+                                      .upper_z = b.hi.z};
 }
 
 static bool meet_user(const struct placed_shape *s, uint32_t primitive, const struct RTCRay *r, float *t, sr_vec2 *hit)
@@ -70,7 +75,8 @@ static void user_occluded(const struct RTCOccludedFunctionNArguments *a)
         r->tfar = -INFINITY;
 }
 
-/* ---- instances that move: their place is asked for anew by each ray, so that what it meets is exactly where it is then ---- */
+/* ---- instances that move: their place is asked for anew by each ray, so that what it meets is exactly where it is
+ * then ---- */
 
 enum { MOVING_STEPS = 65 };
 
@@ -89,8 +95,12 @@ static void moving_bounds(const struct RTCBoundsFunctionArguments *a)
 {
     const struct instance *instance = a->geometryUserPtr;
     struct sr_box b = instance->boxes[a->timeStep];
-    *a->bounds_o = (struct RTCBounds){.lower_x = b.lo.x, .lower_y = b.lo.y, .lower_z = b.lo.z,
-                                      .upper_x = b.hi.x, .upper_y = b.hi.y, .upper_z = b.hi.z};
+    *a->bounds_o = (struct RTCBounds){.lower_x = b.lo.x,
+                                      .lower_y = b.lo.y,
+                                      .lower_z = b.lo.z,
+                                      .upper_x = b.hi.x,
+                                      .upper_y = b.hi.y,
+                                      .upper_z = b.hi.z};
 }
 
 /* Embree has boxes go evenly from one step to the next: each holds what its two neighbouring intervals do. */
@@ -100,9 +110,12 @@ static void set_boxes(struct instance *instance)
     rtcGetSceneBounds(instance->object->embree, &e);
     struct sr_box own = {{e.lower_x, e.lower_y, e.lower_z}, {e.upper_x, e.upper_y, e.upper_z}};
     for (int i = 0; i < MOVING_STEPS; ++i) {
-        float t0 = (float)(i > 0 ? i - 1 : 0) / (MOVING_STEPS - 1), t1 = (float)(i + 1 < MOVING_STEPS ? i + 1 : i) / (MOVING_STEPS - 1);
+        float t0 = (float)(i > 0 ? i - 1 : 0) / (MOVING_STEPS - 1),
+              t1 = (float)(i + 1 < MOVING_STEPS ? i + 1 : i) / (MOVING_STEPS - 1);
         struct sr_box b = instance->inner ? sr_motion_box(instance->inner, own, t0, t1) : own;
-        instance->boxes[i] = sr_box_is_empty(own) ? own : instance->outer ? sr_motion_box(instance->outer, b, t0, t1) : sr_box_transform(&instance->object_to_world, b);
+        instance->boxes[i] = sr_box_is_empty(own) ? own
+                             : instance->outer    ? sr_motion_box(instance->outer, b, t0, t1)
+                                                  : sr_box_transform(&instance->object_to_world, b);
     }
 }
 
@@ -110,7 +123,8 @@ struct saved_ray {
     sr_vec3 o, d;
 };
 
-static struct saved_ray enter(const struct instance *instance, struct RTCRay *r, struct RTCIntersectContext *context, uint32_t number)
+static struct saved_ray enter(const struct instance *instance, struct RTCRay *r, struct RTCIntersectContext *context,
+                              uint32_t number)
 {
     struct saved_ray saved = {{r->org_x, r->org_y, r->org_z}, {r->dir_x, r->dir_y, r->dir_z}};
     struct sr_transform t = instance_transform(instance, r->time);
@@ -207,7 +221,8 @@ static const void *quads_of(struct sr_scene *scene, const struct sr_shape_mesh *
     }
     for (size_t i = 0; i < pairs; ++i)
         memcpy(quads[i], c + 6 * i + 1, sizeof *quads);
-    for (size_t i = pairs; i < n - pairs; ++i) { // of a b c c one half is a b c, as it stands, and the other has no area
+    for (size_t i = pairs; i < n - pairs;
+         ++i) { // of a b c c one half is a b c, as it stands, and the other has no area
         const int32_t *t = c + 3 * (i + pairs);
         memcpy(quads[i], (int32_t[4]){t[0], t[1], t[2], t[2]}, sizeof *quads);
     }
@@ -220,9 +235,11 @@ static RTCGeometry make_mesh(struct sr_scene *scene, const struct placed_shape *
     size_t stride = 3 * sizeof(int32_t), count = m->indices.count / 3;
     const void *indices = s->is_paired ? quads_of(scene, m, &stride) : m->indices.data;
     RTCGeometry g = rtcNewGeometry(scene->device, s->is_paired ? RTC_GEOMETRY_TYPE_QUAD : RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, m->P.data, 0, sizeof(sr_vec3), m->P.count);
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, m->P.data, 0, sizeof(sr_vec3),
+                               m->P.count);
     if (indices)
-        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, s->is_paired ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3, indices, 0, stride, count - (s->is_paired ? m->pairs : 0));
+        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, s->is_paired ? RTC_FORMAT_UINT4 : RTC_FORMAT_UINT3,
+                                   indices, 0, stride, count - (s->is_paired ? m->pairs : 0));
     if (s->alpha.model)
         rtcSetGeometryIntersectFilterFunction(g, filter_intersect);
     if (s->alpha.model || !s->material)
@@ -253,7 +270,8 @@ static void attach(RTCScene embree, RTCGeometry g, uint32_t number)
     rtcReleaseGeometry(g);
 }
 
-/* Triangles by pairs, if there are many and most have a partner. Lamps keep theirs in order, as lights are numbered by it. */
+/* Triangles by pairs, if there are many and most have a partner. Lamps keep theirs in order, as lights are numbered by
+ * it. */
 static void pair_triangles(struct sr_scene *scene, struct object *object)
 {
     const uint64_t many = 4096;
@@ -263,7 +281,9 @@ static void pair_triangles(struct sr_scene *scene, struct object *object)
         triangles += s->is_mesh ? s->shape.model->primitive_count(s->shape.self) : 0;
     }
     for (uint32_t i = 0; triangles >= many && i < object->shape_count; ++i)
-        pairs += object->shapes[i].is_mesh && object->shapes[i].first_light == SR_NO_LIGHT ? sr_shape_count_pairs(object->shapes[i].shape.self) : 0;
+        pairs += object->shapes[i].is_mesh && object->shapes[i].first_light == SR_NO_LIGHT
+                     ? sr_shape_count_pairs(object->shapes[i].shape.self)
+                     : 0;
     if (triangles < many || 2 * pairs < triangles / 4 * 3)
         return;
     for (uint32_t i = 0; i < object->shape_count; ++i) {
@@ -271,7 +291,8 @@ static void pair_triangles(struct sr_scene *scene, struct object *object)
         if (!s->is_mesh)
             continue;
         if (s->first_light == SR_NO_LIGHT)
-            sr_shape_pair_triangles((struct sr_shape_mesh *)(uintptr_t)s->shape.self, &scene->arena, &scene->error); // before it is shared
+            sr_shape_pair_triangles((struct sr_shape_mesh *)(uintptr_t)s->shape.self, &scene->arena,
+                                    &scene->error); // before it is shared
         s->is_paired = true;
     }
 }
@@ -282,7 +303,8 @@ static bool is_alike(const struct object *a, const struct object *b)
     bool is = a->shape_count == b->shape_count;
     for (uint32_t i = 0; i < a->shape_count && is; ++i) {
         const struct placed_shape *s = &a->shapes[i], *t = &b->shapes[i];
-        is = s->shape.self == t->shape.self && s->is_mesh && !s->alpha.model && !t->alpha.model && s->material && t->material;
+        is = s->shape.self == t->shape.self && s->is_mesh && !s->alpha.model && !t->alpha.model && s->material &&
+             t->material;
     }
     return is;
 }
@@ -347,8 +369,12 @@ static void add_instances(struct sr_scene *scene, struct object *world)
     scene->first_instance = world->shape_count;
     for (size_t i = 0; i < n; ++i) {
         struct object *object = ((struct object **)scene->objects.data)[defs[i].object.index1];
-        instances[i] = (struct instance){.object_to_world = defs[i].object_to_world, .object = object, .outer = defs[i].outer, .inner = defs[i].inner};
-        RTCGeometry g = instances[i].outer || instances[i].inner ? make_moving(scene, &instances[i]) : make_standing(scene, &instances[i]);
+        instances[i] = (struct instance){.object_to_world = defs[i].object_to_world,
+                                         .object = object,
+                                         .outer = defs[i].outer,
+                                         .inner = defs[i].inner};
+        RTCGeometry g = instances[i].outer || instances[i].inner ? make_moving(scene, &instances[i])
+                                                                 : make_standing(scene, &instances[i]);
         if (!g) {
             sr_fail(&scene->error, SR_ERROR_RESOURCE, "not enough memory for %zu instances", n);
             return;
@@ -378,7 +404,8 @@ void scene_build_embree(struct sr_scene *scene, int threads)
     rtcSetDeviceErrorFunction(scene->device, embree_error, scene);
     rtcSetDeviceMemoryMonitorFunction(scene->device, count_memory, scene);
     struct object **objects = scene->objects.data;
-    for (size_t k = 1; k <= scene->objects.count; ++k) { // objects before the world that holds them, and before those that are like them
+    for (size_t k = 1; k <= scene->objects.count;
+         ++k) { // objects before the world that holds them, and before those that are like them
         size_t i = k % scene->objects.count;
         build_object(scene, objects[i]);
         if (i == 0)

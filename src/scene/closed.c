@@ -1,20 +1,21 @@
 /* SPDX-License-Identifier: MIT */
 /* Closed meshes, and rays that slip out between their triangles.
  *
- * A mesh is closed when its boundary is nothing: each edge runs as often one way as the other. With a hash h of an edge's two
- * ends (by position, as seams of texture coordinates double vertices) that is
+ * A mesh is closed when its boundary is nothing: each edge runs as often one way as the other. With a hash h of an
+ * edge's two ends (by position, as seams of texture coordinates double vertices) that is
  *
  *     sum over all edges of +-h(a, b) = 0    modulo 2^64,
  *
- * the sign by which end comes first; another sum vanishes by chance with probability 2^-64. The volume that it encloses (Gauss)
- * tells which side is inside.
+ * the sign by which end comes first; another sum vanishes by chance with probability 2^-64. The volume that it encloses
+ * (Gauss) tells which side is inside.
  *
- * The ray caster decides by the signs of three edge functions of each triangle. Neighbours share the rounding of their edge, so
- * nothing slips through edges; but at a vertex to the last bit the edges around it may be rounded all to one side, and then every
- * triangle refuses the ray. Such gaps are some roundings wide, but where an edge e points at the ray's origin, v away: its function is
- * e x v . d, known to u |e| |v|, so its line is off by u |e| |v| / |e x v|, while it is |e x v| / |v|^2 long; gaps as wide as both
- * are sqrt(u |e| / |v|) wide, 2^-12 [rad] at most. A ray that meets nothing although it began within the box of a closed mesh, and not on the way out,
- * is therefore asked again a few roundings beside (docs/decisions/0022-rays-through-vertices.md). */
+ * The ray caster decides by the signs of three edge functions of each triangle. Neighbours share the rounding of their
+ * edge, so nothing slips through edges; but at a vertex to the last bit the edges around it may be rounded all to one
+ * side, and then every triangle refuses the ray. Such gaps are some roundings wide, but where an edge e points at the
+ * ray's origin, v away: its function is e x v . d, known to u |e| |v|, so its line is off by u |e| |v| / |e x v|, while
+ * it is |e x v| / |v|^2 long; gaps as wide as both are sqrt(u |e| / |v|) wide, 2^-12 [rad] at most. A ray that meets
+ * nothing although it began within the box of a closed mesh, and not on the way out, is therefore asked again a few
+ * roundings beside (docs/decisions/0022-rays-through-vertices.md). */
 #include "scene/private.h"
 
 #include <string.h>
@@ -119,7 +120,8 @@ void scene_find_closed(struct sr_scene *scene)
         struct instance *instance = &scene->instances[i];
         struct sr_box box = boxes[instance->object->number];
         if (!instance->boxes && !sr_box_is_empty(box)) // those that move are not watched
-            watch(scene, (struct closed){.box = sr_box_transform(&instance->object_to_world, box), .instance = instance});
+            watch(scene,
+                  (struct closed){.box = sr_box_transform(&instance->object_to_world, box), .instance = instance});
     }
     for (uint32_t i = 0; i < scene->closed_count; ++i) {
         struct closed *c = &scene->closed[i];
@@ -144,11 +146,16 @@ bool scene_may_have_slipped(const struct sr_scene *scene, const struct sr_ray *r
 
 sr_vec3 scene_beside(sr_vec3 d, int attempt)
 {
-    static const sr_vec3 ways[SLIP_ATTEMPTS + SLIP_RING] = {{0.62f, -0.81f, 0.37f}, {-0.93f, -0.29f, 0.71f}, {0.43f, 0.97f, -0.58f},
+    static const sr_vec3 ways[SLIP_ATTEMPTS + SLIP_RING] = {{0.62f, -0.81f, 0.37f},
+                                                            {-0.93f, -0.29f, 0.71f},
+                                                            {0.43f, 0.97f, -0.58f},
                                                             // a tetrahedron: whichever way it is seen, around d
-                                                            {0.58f, 0.58f, 0.58f}, {0.58f, -0.58f, -0.58f}, {-0.58f, 0.58f, -0.58f}, {-0.58f, -0.58f, 0.58f}};
+                                                            {0.58f, 0.58f, 0.58f},
+                                                            {0.58f, -0.58f, -0.58f},
+                                                            {-0.58f, 0.58f, -0.58f},
+                                                            {-0.58f, -0.58f, 0.58f}};
     static const float far[SLIP_ATTEMPTS] = {0x1p-20f, 0x1p-18f, 0x1p-16f}; // [rad]; 16 to 256 roundings
-    const float ring = 0x1p-11f;                                             // [rad]; beside a gap of 2^-12
+    const float ring = 0x1p-11f;                                            // [rad]; beside a gap of 2^-12
     float size = sr_max(fabsf(d.x), sr_max(fabsf(d.y), fabsf(d.z)));
     return sr_mad(d, (attempt < SLIP_ATTEMPTS ? far[attempt] : ring) * size, ways[attempt]);
 }

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* What of a scene no ray meets, and what stands twice: counted, and told.
  *
- * Three kinds are never met: primitives whose area is 0 in float; those with a coordinate beyond 1.844e18 m, the square root of the
- * largest float, where the ray caster leaves them out; those with numbers that are not finite, left out when a mesh is placed.
- * Limits: of curves and quadrics only the area is looked at. Copies are looked for within one mesh. */
+ * Three kinds are never met: primitives whose area is 0 in float; those with a coordinate beyond 1.844e18 m, the square
+ * root of the largest float, where the ray caster leaves them out; those with numbers that are not finite, left out
+ * when a mesh is placed. Limits: of curves and quadrics only the area is looked at. Copies are looked for within one
+ * mesh. */
 #include "scene/private.h"
 
 #include <stdio.h>
@@ -28,7 +29,8 @@ static bool has_large_vertex(struct sr_slice P)
 
 static void no_memory(struct sr_scene *scene)
 {
-    sr_fail(&scene->error, SR_ERROR_RESOURCE, "not enough memory for the scene (%zu MiB so far)", scene->arena.total >> 20);
+    sr_fail(&scene->error, SR_ERROR_RESOURCE, "not enough memory for the scene (%zu MiB so far)",
+            scene->arena.total >> 20);
 }
 
 void scene_count_degenerate(struct sr_scene *scene, const struct sr_shape_def *def)
@@ -99,8 +101,8 @@ static void tell(const struct group *g, struct sr_log *log)
         snprintf(place, sizeof place, where->line ? "%s:%d:%d: " : "%s: ", where->file, where->line, where->column);
     if (g->shapes > 1)
         snprintf(more, sizeof more, " (of %llu shapes of this file; this is the first)", (unsigned long long)g->shapes);
-    sr_log(log, SR_WARNING, "%s%s: %llu of %llu primitives %s, and no ray meets them%s", place, g->first->model, (unsigned long long)g->unmet,
-           (unsigned long long)g->of, why[g->kind], more);
+    sr_log(log, SR_WARNING, "%s%s: %llu of %llu primitives %s, and no ray meets them%s", place, g->first->model,
+           (unsigned long long)g->unmet, (unsigned long long)g->of, why[g->kind], more);
 }
 
 void sr_scene_tell_degenerate(const struct sr_scene *scene, struct sr_log *log)

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Which medium is where: surfaces tell what is on their two sides, and nothing else does.
  *
- * A point's medium is that of the first surface with media along any ray from it. But files set a medium for the world outside of
- * all that follows, so that opaque things are vacuum inside, sheets too: their backs tell nothing. Limits: surfaces that
- * contradict each other are not noticed; a ray that slips between them finds what is around the scene; nor is the vacuum inside
- * of glass found. */
+ * A point's medium is that of the first surface with media along any ray from it. But files set a medium for the world
+ * outside of all that follows, so that opaque things are vacuum inside, sheets too: their backs tell nothing. Limits:
+ * surfaces that contradict each other are not noticed; a ray that slips between them finds what is around the scene;
+ * nor is the vacuum inside of glass found. */
 #include "scene/private.h"
 
 enum { MOST_PASSED = 1000 };

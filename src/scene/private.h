@@ -13,34 +13,34 @@ struct placed_shape {
     const struct sr_material *material;
     struct sr_texture alpha;
     const struct sr_media *media;
-    uint32_t first_light;     // SR_NO_LIGHT: dark
-    uint32_t per_light;       // primitives that make one light
-    uint32_t number;          // from 1, in the order of description
-    uint32_t material_number; // from 1; 0: interface
+    uint32_t first_light;             // SR_NO_LIGHT: dark
+    uint32_t per_light;               // primitives that make one light
+    uint32_t number;                  // from 1, in the order of description
+    uint32_t material_number;         // from 1; 0: interface
     const struct sr_sigmoid *lambert; // reflectance, if that is all
-    bool has_footprint;       // its material looks at footprints
-    bool is_plain;            // neither its material nor its light looks at more than p, n and ns
-    bool is_mesh;             // of triangles, which Embree meets itself
-    bool is_paired;           // which gets them two at a time, those that stay alone with an empty second half
-    int8_t outward;           // as of struct sr_point
+    bool has_footprint;               // its material looks at footprints
+    bool is_plain;                    // neither its material nor its light looks at more than p, n and ns
+    bool is_mesh;                     // of triangles, which Embree meets itself
+    bool is_paired;                   // which gets them two at a time, those that stay alone with an empty second half
+    int8_t outward;                   // as of struct sr_point
 };
 
 /* What instances share; index 0 is the world. */
 struct object {
-    struct sr_array defs;          // struct sr_shape_def, until finished
-    struct placed_shape *shapes;   // by geometry number
+    struct sr_array defs;        // struct sr_shape_def, until finished
+    struct placed_shape *shapes; // by geometry number
     uint32_t shape_count;
     RTCScene embree;
-    uint32_t number;               // index in the scene's objects
-    uint32_t like;                 // index of the object whose shapes it has; 0: they are its own
+    uint32_t number; // index in the scene's objects
+    uint32_t like;   // index of the object whose shapes it has; 0: they are its own
 };
 
 struct instance {
     struct sr_transform object_to_world; // where it stands
     const struct object *object;
     const struct sr_motion *outer, *inner; // NULL, NULL: it stands; else outer after inner, either may be NULL
-    struct sr_box *boxes; // of a moving one, at its time steps
-    bool is_watched;      // some of it is among the scene's `closed`
+    struct sr_box *boxes;                  // of a moving one, at its time steps
+    bool is_watched;                       // some of it is among the scene's `closed`
 };
 /* Of a moving instance. */
 struct sr_transform instance_transform(const struct instance *instance, float time);
@@ -100,12 +100,13 @@ struct degenerate {
 
 /* Counted so that nothing is lost in silence. */
 void scene_count_degenerate(struct sr_scene *scene, const struct sr_shape_def *def);
-void scene_find_media(struct sr_scene *scene); // once rays can be cast
+void scene_find_media(struct sr_scene *scene);  // once rays can be cast
 void scene_find_closed(struct sr_scene *scene); // once the instances are there
 /* Whether a ray that met nothing began within something closed, and not on the way out, and went on to its outside. */
 bool scene_may_have_slipped(const struct sr_scene *scene, const struct sr_ray *ray);
-/* The direction, a few roundings beside, attempt 0 … SLIP_ATTEMPTS - 1; then 0.5 mrad beside on all sides, SLIP_RING of them, all of
- * which must meet something before one is believed: else silhouettes would grow by as much. Only for rays without end. */
+/* The direction, a few roundings beside, attempt 0 … SLIP_ATTEMPTS - 1; then 0.5 mrad beside on all sides, SLIP_RING of
+ * them, all of which must meet something before one is believed: else silhouettes would grow by as much. Only for rays
+ * without end. */
 sr_vec3 scene_beside(sr_vec3 d, int attempt);
 void scene_build_embree(struct sr_scene *scene, int threads);
 

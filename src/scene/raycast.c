@@ -1,22 +1,24 @@
 /* SPDX-License-Identifier: MIT */
-/* The two operators of the theory: raycast(p, w), the nearest surface point; visible(p, p'), the visibility function V. */
+/* The two operators of the theory: raycast(p, w), the nearest surface point; visible(p, p'), the visibility function V.
+ */
 #include "scene/private.h"
 
 static void fill_ray(struct RTCRay *r, sr_vec3 o, sr_vec3 d, float time, float t_max)
 {
     typedef float f4 __attribute__((vector_size(16)));
-    // a plane through a coordinate's zero has no rounding error there, so that rays start on it exactly: 0 is no meeting
-    const float nearest = 1e-20f; // [m]
+    // a plane through a coordinate's zero has no rounding error there, so that rays start on it exactly: 0 is no
+    // meeting
+    const float nearest = 1e-20f;                    // [m]
     *(f4 *)&r->org_x = (f4){o.x, o.y, o.z, nearest}; // org, tnear
-    *(f4 *)&r->dir_x = (f4){d.x, d.y, d.z, time}; // dir, time
+    *(f4 *)&r->dir_x = (f4){d.x, d.y, d.z, time};    // dir, time
     r->tfar = t_max;
     r->mask = ~0u;
     r->id = 0;
     r->flags = 0;
 }
 
-/* The point of an instanced object, in the world. Its place is known to float's rounding, in both directions: on the way back to where the surface
- * is, a ray must not be on its other side. roundings: of a coordinate on that way. */
+/* The point of an instanced object, in the world. Its place is known to float's rounding, in both directions: on the
+ * way back to where the surface is, a ray must not be on its other side. roundings: of a coordinate on that way. */
 static void to_world(struct sr_point *x, const struct sr_transform *t, int roundings)
 {
     sr_vec3 error;
@@ -30,7 +32,8 @@ static void to_world(struct sr_point *x, const struct sr_transform *t, int round
     x->dndv = sr_transform_normal(t, x->dndv);
     float back[3], gamma = sr_gamma(roundings), *e = &error.x;
     for (int i = 0; i < 3; ++i)
-        back[i] = gamma * (fabsf(t->inverse[i][0] * x->p.x) + fabsf(t->inverse[i][1] * x->p.y) + fabsf(t->inverse[i][2] * x->p.z) + fabsf(t->inverse[i][3]));
+        back[i] = gamma * (fabsf(t->inverse[i][0] * x->p.x) + fabsf(t->inverse[i][1] * x->p.y) +
+                           fabsf(t->inverse[i][2] * x->p.z) + fabsf(t->inverse[i][3]));
     for (int i = 0; i < 3; ++i)
         e[i] += fabsf(t->m[i][0]) * back[0] + fabsf(t->m[i][1]) * back[1] + fabsf(t->m[i][2]) * back[2];
     x->p_error = error;
@@ -71,10 +74,13 @@ SR_INLINE bool raycast(const struct sr_scene *scene, const struct sr_ray *ray, b
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcIntersect1(scene->embree, &context, &rh);
-    if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID && !(scene->closed_count && scene_may_have_slipped(scene, ray) && cast_beside(scene, ray, &rh)))
+    if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID &&
+        !(scene->closed_count && scene_may_have_slipped(scene, ray) && cast_beside(scene, ray, &rh)))
         return false;
 
-    const struct instance *instance = rh.hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? NULL : &scene->instances[rh.hit.instID[0] - scene->first_instance];
+    const struct instance *instance = rh.hit.instID[0] == RTC_INVALID_GEOMETRY_ID
+                                          ? NULL
+                                          : &scene->instances[rh.hit.instID[0] - scene->first_instance];
     const struct object *object = instance ? instance->object : scene->world;
     const struct placed_shape *s = &object->shapes[rh.hit.geomID];
     sr_vec2 at = {rh.hit.u, rh.hit.v};
@@ -107,7 +113,8 @@ SR_INLINE bool raycast(const struct sr_scene *scene, const struct sr_ray *ray, b
     hit->t = rh.ray.tfar;
     hit->material = s->material;
     hit->media = s->media;
-    hit->light = s->first_light == SR_NO_LIGHT ? SR_NO_LIGHT : s->first_light + (s->per_light == 2 ? primitive / 2 : primitive);
+    hit->light =
+        s->first_light == SR_NO_LIGHT ? SR_NO_LIGHT : s->first_light + (s->per_light == 2 ? primitive / 2 : primitive);
     hit->object = s->number;
     hit->material_number = s->material_number;
     hit->has_footprint = s->has_footprint;
@@ -178,7 +185,8 @@ void sr_point_set_footprint(struct sr_point *x, sr_vec3 dpdx, sr_vec3 dpdy)
     float inverse = determinant != 0 ? 1 / determinant : 0;
     if (!isfinite(inverse))
         inverse = 0;
-    float b0x = sr_dot(x->dpdu, dpdx), b1x = sr_dot(x->dpdv, dpdx), b0y = sr_dot(x->dpdu, dpdy), b1y = sr_dot(x->dpdv, dpdy);
+    float b0x = sr_dot(x->dpdu, dpdx), b1x = sr_dot(x->dpdv, dpdx), b0y = sr_dot(x->dpdu, dpdy),
+          b1y = sr_dot(x->dpdv, dpdy);
     x->dudx = sr_clamp((a11 * b0x - a01 * b1x) * inverse, -1e8f, 1e8f);
     x->dvdx = sr_clamp((a00 * b1x - a01 * b0x) * inverse, -1e8f, 1e8f);
     x->dudy = sr_clamp((a11 * b0y - a01 * b1y) * inverse, -1e8f, 1e8f);

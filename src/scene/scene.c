@@ -6,7 +6,8 @@
 
 static void no_memory(struct sr_scene *scene)
 {
-    sr_fail(&scene->error, SR_ERROR_RESOURCE, "not enough memory for the scene (%zu MiB so far)", scene->arena.total >> 20);
+    sr_fail(&scene->error, SR_ERROR_RESOURCE, "not enough memory for the scene (%zu MiB so far)",
+            scene->arena.total >> 20);
 }
 
 struct sr_scene *sr_scene_create(void)
@@ -124,7 +125,9 @@ static void add_movers(struct sr_scene *scene)
     for (size_t i = 0; i < scene->mover_defs.count; ++i) {
         const struct mover_def *m = &movers[i];
         if (!m->parent.index1)
-            add_instance(scene, (struct instance_def){.object_to_world = sr_transform_identity(), .object = m->object, .inner = m->motion});
+            add_instance(scene, (struct instance_def){.object_to_world = sr_transform_identity(),
+                                                      .object = m->object,
+                                                      .inner = m->motion});
         for (size_t k = 0; m->parent.index1 && k < stated; ++k) {
             struct instance_def def = ((struct instance_def *)scene->instance_defs.data)[k];
             if (def.object.index1 != m->parent.index1)
@@ -167,8 +170,10 @@ static uint32_t number_material(struct sr_scene *scene, const struct sr_material
     return (uint32_t)scene->material_list.count;
 }
 
-/* One light for each primitive of a glowing shape, or for each pair of triangles that makes a parallelogram: *per_light. */
-static uint32_t add_area_lights(struct sr_scene *scene, const struct sr_shape_def *def, bool is_ghost, uint32_t *per_light)
+/* One light for each primitive of a glowing shape, or for each pair of triangles that makes a parallelogram:
+ * *per_light. */
+static uint32_t add_area_lights(struct sr_scene *scene, const struct sr_shape_def *def, bool is_ghost,
+                                uint32_t *per_light)
 {
     struct sr_shape shape = def->shape;
     struct sr_shape_patches joined;
@@ -224,7 +229,8 @@ static void place_shapes(struct sr_scene *scene, struct object *object, bool is_
         float alpha = 1;
         bool is_invisible = def->alpha.model && sr_texture_is_constant_float(def->alpha, &alpha) && alpha <= 0;
         bool has_light = def->emission && is_world && def->shape.model->sample;
-        uint32_t per_light = 1, first_light = has_light ? add_area_lights(scene, def, is_invisible, &per_light) : SR_NO_LIGHT;
+        uint32_t per_light = 1,
+                 first_light = has_light ? add_area_lights(scene, def, is_invisible, &per_light) : SR_NO_LIGHT;
         uint32_t n = def->shape.model->primitive_count(def->shape.self);
         bool is_mesh = def->shape.model == &sr_shape_trianglemesh;
         if (!object->like) {
@@ -239,12 +245,21 @@ static void place_shapes(struct sr_scene *scene, struct object *object, bool is_
             scene->has_interfaces |= material_number == 0;
         }
         object->shapes[object->shape_count++] = (struct placed_shape){
-            .shape = def->shape, .material = material_number ? def->material : NULL, .first_light = first_light, .per_light = per_light, .number = number,
+            .shape = def->shape,
+            .material = material_number ? def->material : NULL,
+            .first_light = first_light,
+            .per_light = per_light,
+            .number = number,
             .media = def->media,
-            .alpha = def->alpha.model && !(sr_texture_is_constant_float(def->alpha, &alpha) && alpha >= 1) ? def->alpha : (struct sr_texture){0},
-            .material_number = material_number, .has_footprint = material_number && sr_material_has_footprint(def->material), .is_mesh = is_mesh,
+            .alpha = def->alpha.model && !(sr_texture_is_constant_float(def->alpha, &alpha) && alpha >= 1)
+                         ? def->alpha
+                         : (struct sr_texture){0},
+            .material_number = material_number,
+            .has_footprint = material_number && sr_material_has_footprint(def->material),
+            .is_mesh = is_mesh,
             .lambert = sr_material_lambert(material_number ? def->material : NULL),
-            .is_plain = sr_material_is_plain(material_number ? def->material : NULL) && !(has_light && def->emission->texels.width)};
+            .is_plain = sr_material_is_plain(material_number ? def->material : NULL) &&
+                        !(has_light && def->emission->texels.width)};
         scene->has_footprints |= object->shapes[object->shape_count - 1].has_footprint;
         scene->has_subsurface |= sr_material_has_bssrdf(def->material);
     }
@@ -265,7 +280,8 @@ static void place_lights(struct sr_scene *scene, enum sr_light_choice choice)
     sr_array_free(&scene->light_defs);
     for (uint32_t i = 0; i < n; ++i)
         if (lights[i].model->place)
-            lights[i].model->place((void *)(uintptr_t)lights[i].self, centre, radius); // the last change before it is shared
+            lights[i].model->place((void *)(uintptr_t)lights[i].self, centre,
+                                   radius); // the last change before it is shared
     scene->counts.lights = n;
     scene->counts.materials = scene->material_list.count;
     sr_lights_build(&scene->arena, lights, n, choice, &scene->lights, &scene->error);

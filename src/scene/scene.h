@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* All of it together: described, then finished, then never changed.
  *
- * Describe with sr_scene_add_*, call sr_scene_finish once; from then on any number of threads may ask. The first mistake
- * sticks, and sr_scene_finish tells it. Everything that definitions point to lives in sr_scene_arena, or longer. */
+ * Describe with sr_scene_add_*, call sr_scene_finish once; from then on any number of threads may ask. The first
+ * mistake sticks, and sr_scene_finish tells it. Everything that definitions point to lives in sr_scene_arena, or
+ * longer. */
 #ifndef SR_SCENE_SCENE_H
 #define SR_SCENE_SCENE_H
 
@@ -23,14 +24,14 @@ struct sr_media {
 };
 
 struct sr_shape_def {
-    struct sr_shape shape;              // prepared
-    const struct sr_material *material; // NULL or without model: interface
-    struct sr_texture alpha;            // float texture [1], or none: opaque
+    struct sr_shape shape;                    // prepared
+    const struct sr_material *material;       // NULL or without model: interface
+    struct sr_texture alpha;                  // float texture [1], or none: opaque
     const struct sr_light_emission *emission; // prepared; NULL: dark
-    sr_object_id object;                // the object that it belongs to; none: the world
-    const struct sr_media *media;       // NULL: the same medium on both sides
-    const struct sr_motion *motion;     // NULL: it stands; else into its object's space, or the world. It may not glow
-    struct sr_location where;           // for messages; file NULL: nobody knows
+    sr_object_id object;                      // the object that it belongs to; none: the world
+    const struct sr_media *media;             // NULL: the same medium on both sides
+    const struct sr_motion *motion; // NULL: it stands; else into its object's space, or the world. It may not glow
+    struct sr_location where;       // for messages; file NULL: nobody knows
 };
 
 struct sr_scene *sr_scene_create(void); // NULL: no memory
@@ -39,11 +40,12 @@ struct sr_arena *sr_scene_arena(struct sr_scene *scene);
 struct sr_error *sr_scene_error(struct sr_scene *scene); // where mistakes stick
 void sr_scene_add_shape(struct sr_scene *scene, const struct sr_shape_def *def);
 sr_object_id sr_scene_add_object(struct sr_scene *scene);
-/* An object whose shapes are the very ones of an earlier object, in other materials: where nothing but the material differs, both
- * have one acceleration structure, and the shapes are counted once. */
+/* An object whose shapes are the very ones of an earlier object, in other materials: where nothing but the material
+ * differs, both have one acceleration structure, and the shapes are counted once. */
 sr_object_id sr_scene_add_object_like(struct sr_scene *scene, sr_object_id earlier);
 void sr_scene_add_instance(struct sr_scene *scene, sr_object_id object, const struct sr_transform *object_to_world);
-void sr_scene_add_moving_instance(struct sr_scene *scene, sr_object_id object, const struct sr_motion *motion); // of object to world
+void sr_scene_add_moving_instance(struct sr_scene *scene, sr_object_id object,
+                                  const struct sr_motion *motion); // of object to world
 void sr_scene_add_light(struct sr_scene *scene, struct sr_light light);
 /* What is around the sensor; without model: vacuum, as it is if nobody says anything. */
 void sr_scene_set_sensor_medium(struct sr_scene *scene, struct sr_medium medium);
@@ -69,8 +71,8 @@ struct sr_hit {
 
 /* The ray-casting operator: the nearest surface point along the ray. false: the ray escapes. */
 bool sr_raycast(const struct sr_scene *scene, const struct sr_ray *ray, struct sr_hit *hit);
-/* The same, where nobody but the material and the light of the surface looks at the point: what they do not look at is not
- * computed, and there is no tangent (dpdus 0) where they need none. */
+/* The same, where nobody but the material and the light of the surface looks at the point: what they do not look at is
+ * not computed, and there is no tangent (dpdus 0) where they need none. */
 bool sr_raycast_bare(const struct sr_scene *scene, const struct sr_ray *ray, struct sr_hit *hit);
 /* The visibility function V between x and the point (or, at infinite distance, the direction) of a light sample. */
 bool sr_visible(const struct sr_scene *scene, const struct sr_point *x, const struct sr_light_sample *s);
@@ -80,13 +82,18 @@ static inline struct sr_ray sr_shadow_ray(const struct sr_point *x, const struct
     const float share = 1 - 1e-4f; // it ends this much before its target, which lies on a surface itself
     sr_vec3 o = sr_point_offset(x, s->wi);
     bool is_outward = sr_is_outward(x, s->wi), is_far = isinf(s->distance);
-    return (struct sr_ray){.o = o, .is_outward = is_outward, .d = is_far ? s->wi : sr_sub(s->p, o), .time = x->time, .t_max = is_far ? INFINITY : share};
+    return (struct sr_ray){.o = o,
+                           .is_outward = is_outward,
+                           .d = is_far ? s->wi : sr_sub(s->p, o),
+                           .time = x->time,
+                           .t_max = is_far ? INFINITY : share};
 }
 bool sr_is_free(const struct sr_scene *scene, const struct sr_ray *segment);
 /* A ray that leaves x toward w. */
 static inline struct sr_ray sr_leave(const struct sr_point *x, sr_vec3 w)
 {
-    return (struct sr_ray){.o = sr_point_offset(x, w), .d = w, .time = x->time, .t_max = INFINITY, .is_outward = sr_is_outward(x, w)};
+    return (struct sr_ray){
+        .o = sr_point_offset(x, w), .d = w, .time = x->time, .t_max = INFINITY, .is_outward = sr_is_outward(x, w)};
 }
 /* The point's footprint from the sensor ray's differentials, or a cone: fills dpdx … dvdy. */
 void sr_point_set_footprint(struct sr_point *x, sr_vec3 dpdx, sr_vec3 dpdy);
@@ -97,7 +104,7 @@ struct sr_ray_log {
         sr_vec3 o, d;
         float t_max; // [in lengths of d]
         bool is_shadow;
-    } *rays;
+    } * rays;
     uint64_t count, capacity;
 };
 /* Asks the ray caster the same questions again and does nothing with the answers: what the rays alone cost. Returns how
@@ -110,8 +117,8 @@ bool sr_scene_has_media(const struct sr_scene *scene);
 bool sr_scene_has_interfaces(const struct sr_scene *scene);
 /* A medium as rays carry it along: NULL is vacuum. */
 const struct sr_medium *sr_scene_sensor_medium(const struct sr_scene *scene);
-/* Where the ray begins: what is on this side of the first surface along it that has media, whatever is in between; where
- * there is none, what is around the scene: the outermost surface's outside, or else the sensor's medium. */
+/* Where the ray begins: what is on this side of the first surface along it that has media, whatever is in between;
+ * where there is none, what is around the scene: the outermost surface's outside, or else the sensor's medium. */
 const struct sr_medium *sr_scene_medium_at(const struct sr_scene *scene, const struct sr_ray *ray);
 /* On the side of the surface that w points to, for light that has come through `medium`. */
 static inline const struct sr_medium *sr_hit_medium(const struct sr_hit *hit, sr_vec3 w, const struct sr_medium *medium)
@@ -122,21 +129,22 @@ static inline const struct sr_medium *sr_hit_medium(const struct sr_hit *hit, sr
     return m->model ? m : NULL;
 }
 bool sr_scene_has_footprints(const struct sr_scene *scene); // whether any material looks at them
-bool sr_scene_has_mirrors(const struct sr_scene *scene); // whether any material, seen straight on, is a mirror or clear glass
+bool sr_scene_has_mirrors(
+    const struct sr_scene *scene); // whether any material, seen straight on, is a mirror or clear glass
 bool sr_scene_has_subsurface(const struct sr_scene *scene); // whether light comes out of any material elsewhere
-bool sr_scene_moves(const struct sr_scene *scene); // whether anything does while the shutter is open
+bool sr_scene_moves(const struct sr_scene *scene);          // whether anything does while the shutter is open
 struct sr_box sr_scene_bounds(const struct sr_scene *scene);
 
 struct sr_scene_counts {
     uint64_t triangles, patches, quadrics, curves, instances, objects, lights, materials; // [1]
-    uint64_t geometry_B, acceleration_B;                                          // [B]
-    uint64_t degenerate, too_large, not_finite;                                    // [1] primitives that no ray meets: without
-                                                                                  // area, beyond 1e18 m, with numbers that are none
-    double build_s;      // [s]
+    uint64_t geometry_B, acceleration_B;                                                  // [B]
+    uint64_t degenerate, too_large, not_finite; // [1] primitives that no ray meets: without
+                                                // area, beyond 1e18 m, with numbers that are none
+    double build_s;                             // [s]
 };
 struct sr_scene_counts sr_scene_count(const struct sr_scene *scene);
-/* Triangles that have the corners of another one of their mesh, in any order: both are there, and which is met is left to rounding.
- * Takes 16 to 32 bytes a triangle while it looks; less memory: 0. */
+/* Triangles that have the corners of another one of their mesh, in any order: both are there, and which is met is left
+ * to rounding. Takes 16 to 32 bytes a triangle while it looks; less memory: 0. */
 uint64_t sr_scene_count_duplicates(const struct sr_scene *scene);
 /* Warnings of primitives that no ray meets: for each file and kind one, with the first place, up to ten. */
 void sr_scene_tell_degenerate(const struct sr_scene *scene, struct sr_log *log);

@@ -4,11 +4,11 @@
  *     r = 1 at the rim, theta_m = fov / 2 from the axis there:
  *     equidistant    theta = r theta_m                               (angular; Radiance's -vta)
  *     equisolid      sin(theta/2) = r sin(theta_m/2)                 all pixels see the same solid angle
- *     orthographic   sin theta = r sin theta_m                       all pixels weigh alike in the illuminance (Radiance's -vth)
- *     stereographic  tan(theta/2) = r tan(theta_m/2)                 keeps shapes (Radiance's -vts)
+ *     orthographic   sin theta = r sin theta_m                       all pixels weigh alike in the illuminance
+ * (Radiance's -vth) stereographic  tan(theta/2) = r tan(theta_m/2)                 keeps shapes (Radiance's -vts)
  *
- * The disk touches the shorter sides of the picture. Light comes to three pixels beyond the rim, so that those which the rim
- * cuts tell the mean of what they see, and to none further out. The solid angle of a pixel is the integral
+ * The disk touches the shorter sides of the picture. Light comes to three pixels beyond the rim, so that those which
+ * the rim cuts tell the mean of what they see, and to none further out. The solid angle of a pixel is the integral
  * along its border
  *
  *     Omega = CLOSED INTEGRAL (1 - cos theta) dphi [sr],    Omega_p = CLOSED INTEGRAL 1/2 sin^2 theta dphi [sr]
@@ -68,7 +68,8 @@ static void caps(enum sr_fisheye kind, double r2, double rim, double out[2])
 /* What a piece of a straight line that does not cross the rim adds to both integrals. */
 static void add_piece(enum sr_fisheye kind, double rim, const double a[2], const double b[2], double sum[2])
 {
-    static const double node[3] = {0, 0.5384693101056831, 0.9061798459386640}, weight[3] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
+    static const double node[3] = {0, 0.5384693101056831, 0.9061798459386640},
+                        weight[3] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
     double cross = a[0] * b[1] - a[1] * b[0], g[2];
     if (cross == 0)
         return;
@@ -81,7 +82,8 @@ static void add_piece(enum sr_fisheye kind, double rim, const double a[2], const
         return;
     }
     for (int k = -2; k <= 2; ++k) {
-        double t = 0.5 + 0.5 * (k < 0 ? -node[-k] : node[k]), x = a[0] + t * (b[0] - a[0]), y = a[1] + t * (b[1] - a[1]), r2 = x * x + y * y;
+        double t = 0.5 + 0.5 * (k < 0 ? -node[-k] : node[k]), x = a[0] + t * (b[0] - a[0]),
+               y = a[1] + t * (b[1] - a[1]), r2 = x * x + y * y;
         caps(kind, r2, rim, g);
         double share = r2 > 1e-24 ? 0.5 * weight[abs(k)] * cross / r2 : 0; // dphi = cross dt / r^2
         sum[0] += share * g[0];
@@ -92,7 +94,8 @@ static void add_piece(enum sr_fisheye kind, double rim, const double a[2], const
 static void add_edge(enum sr_fisheye kind, double rim, const double a[2], const double b[2], double sum[2])
 {
     // where |a + t (b - a)| = 1
-    double d[2] = {b[0] - a[0], b[1] - a[1]}, A = d[0] * d[0] + d[1] * d[1], B = a[0] * d[0] + a[1] * d[1], C = a[0] * a[0] + a[1] * a[1] - 1;
+    double d[2] = {b[0] - a[0], b[1] - a[1]}, A = d[0] * d[0] + d[1] * d[1], B = a[0] * d[0] + a[1] * d[1],
+           C = a[0] * a[0] + a[1] * a[1] - 1;
     double cut[4] = {0, 1, 1, 1}, root = B * B - A * C;
     int n = 1;
     if (root > 0 && A > 0)
@@ -103,15 +106,18 @@ static void add_edge(enum sr_fisheye kind, double rim, const double a[2], const 
         }
     cut[n] = 1;
     for (int k = 0; k < n; ++k) {
-        double from[2] = {a[0] + cut[k] * d[0], a[1] + cut[k] * d[1]}, to[2] = {a[0] + cut[k + 1] * d[0], a[1] + cut[k + 1] * d[1]};
+        double from[2] = {a[0] + cut[k] * d[0], a[1] + cut[k] * d[1]},
+               to[2] = {a[0] + cut[k + 1] * d[0], a[1] + cut[k + 1] * d[1]};
         add_piece(kind, rim, from, to, sum);
     }
 }
 
-void sr_fisheye_pixel(enum sr_fisheye kind, double rim, struct sr_sensor_raster raster, uint32_t x, uint32_t y, double *omega, double *projected)
+void sr_fisheye_pixel(enum sr_fisheye kind, double rim, struct sr_sensor_raster raster, uint32_t x, uint32_t y,
+                      double *omega, double *projected)
 {
     double scale = 2.0 / (raster.width < raster.height ? raster.width : raster.height);
-    double x0 = (x - raster.width / 2.0) * scale, y0 = (y - raster.height / 2.0) * scale, x1 = x0 + scale, y1 = y0 + scale, sum[2] = {0, 0};
+    double x0 = (x - raster.width / 2.0) * scale, y0 = (y - raster.height / 2.0) * scale, x1 = x0 + scale,
+           y1 = y0 + scale, sum[2] = {0, 0};
     const double corner[5][2] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}};
     double near_x = fmax(fmax(x0, -x1), 0), near_y = fmax(fmax(y0, -y1), 0);
     if (near_x * near_x + near_y * near_y < 1)
@@ -121,7 +127,8 @@ void sr_fisheye_pixel(enum sr_fisheye kind, double rim, struct sr_sensor_raster 
     *projected = rim > half_pi + 1e-6 ? (double)NAN : fmax(0, sum[1]);
 }
 
-bool sr_fisheye_direction(enum sr_fisheye kind, double rim, struct sr_sensor_raster raster, double x, double y, double d[3])
+bool sr_fisheye_direction(enum sr_fisheye kind, double rim, struct sr_sensor_raster raster, double x, double y,
+                          double d[3])
 {
     double scale = 2.0 / (raster.width < raster.height ? raster.width : raster.height);
     double u = (x - raster.width / 2.0) * scale, v = (raster.height / 2.0 - y) * scale, r = sqrt(u * u + v * v);
@@ -139,20 +146,21 @@ bool sr_fisheye_direction(enum sr_fisheye kind, double rim, struct sr_sensor_ras
 struct fisheye {
     struct sr_sensor_common common;
     int32_t mapping;
-    float fov; // [deg]
+    float fov;  // [deg]
     double rim; // [rad]
     sr_vec3 origin;
 };
 
 static const struct sr_param params[] = {
-    {SR_PARAM_ENUM, "mapping", "1", 0, 3, 0, offsetof(struct fisheye, mapping), "equidistant|equisolid|orthographic|stereographic"},
+    {SR_PARAM_ENUM, "mapping", "1", 0, 3, 0, offsetof(struct fisheye, mapping),
+     "equidistant|equisolid|orthographic|stereographic"},
     {SR_PARAM_FLOAT, "fov", "deg", 1, 360, 180, offsetof(struct fisheye, fov), "angle across the disk"},
     SENSOR_SHUTTER_ROWS(struct fisheye),
     {0},
 };
 
-static sr_status prepare(void *self, struct sr_sensor_raster raster, const struct sr_transform *camera_to_world, struct sr_arena *arena,
-                         struct sr_error *error)
+static sr_status prepare(void *self, struct sr_sensor_raster raster, const struct sr_transform *camera_to_world,
+                         struct sr_arena *arena, struct sr_error *error)
 {
     (void)arena;
     struct fisheye *s = self;
@@ -161,7 +169,8 @@ static sr_status prepare(void *self, struct sr_sensor_raster raster, const struc
         return status;
     float most = s->mapping == SR_FISHEYE_ORTHOGRAPHIC ? 180 : s->mapping == SR_FISHEYE_STEREOGRAPHIC ? 350 : 360;
     if (s->fov > most)
-        return sr_fail(error, SR_ERROR_INPUT, "fov %g deg: this projection reaches %g deg at most", (double)s->fov, (double)most);
+        return sr_fail(error, SR_ERROR_INPUT, "fov %g deg: this projection reaches %g deg at most", (double)s->fov,
+                       (double)most);
     s->rim = (double)s->fov * half_pi / 180;
     s->origin = sr_transform_point(camera_to_world, (sr_vec3){0, 0, 0});
     return SR_OK;
@@ -172,7 +181,8 @@ static bool direction(const struct fisheye *s, double x, double y, sr_vec3 *out)
     double d[3];
     if (!sr_fisheye_direction((enum sr_fisheye)s->mapping, s->rim, s->common.raster, x, y, d))
         return false;
-    *out = sr_normalize(sr_transform_vector(&s->common.camera_to_world, (sr_vec3){(float)d[0], (float)d[1], (float)d[2]}));
+    *out =
+        sr_normalize(sr_transform_vector(&s->common.camera_to_world, (sr_vec3){(float)d[0], (float)d[1], (float)d[2]}));
     return true;
 }
 
@@ -181,7 +191,8 @@ static bool ray(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_time, 
     (void)u_lens; // a point sees all: there is no lens
     const struct fisheye *s = self;
     sr_vec3 d, dx, dy;
-    double x = (double)raster.x, y = (double)raster.y, half_x = s->common.raster.width / 2.0, half_y = s->common.raster.height / 2.0;
+    double x = (double)raster.x, y = (double)raster.y, half_x = s->common.raster.width / 2.0,
+           half_y = s->common.raster.height / 2.0;
     if (!direction(s, x, y, &d))
         return false;
     // toward the middle, where there is a neighbour always
@@ -197,4 +208,5 @@ static bool ray(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_time, 
     return true;
 }
 
-const struct sr_sensor_model sr_sensor_fisheye = {.name = "fisheye", .params = params, .size = sizeof(struct fisheye), .prepare = prepare, .ray = ray};
+const struct sr_sensor_model sr_sensor_fisheye = {
+    .name = "fisheye", .params = params, .size = sizeof(struct fisheye), .prepare = prepare, .ray = ray};

@@ -8,12 +8,8 @@
 #include <string.h>
 
 const struct sr_sensor_model *const sr_sensor_models[] = {
-    &sr_sensor_perspective,
-    &sr_sensor_orthographic,
-    &sr_sensor_spherical,
-    &sr_sensor_fisheye,
-    &sr_sensor_realistic,
-    NULL,
+    &sr_sensor_perspective, &sr_sensor_orthographic, &sr_sensor_spherical,
+    &sr_sensor_fisheye,     &sr_sensor_realistic,    NULL,
 };
 
 const struct sr_sensor_model *sr_sensor_model_find(const char *name)

@@ -3,9 +3,9 @@
  *
  *     o' = M(t) o,   d' ~ L(t) d,   weight' = weight |det N| / |N w|,   distance = |N w| distance',   N = L(t)^-1
  *
- * A tube of rays has the volume area times length; N changes the first by |det N| and the second by |N w|, w of unit length, and
- * so the area across by their ratio. Where one place of the lens sees a pixel at one time, all others do at all times: lens and
- * time are drawn independently. */
+ * A tube of rays has the volume area times length; N changes the first by |det N| and the second by |N w|, w of unit
+ * length, and so the area across by their ratio. Where one place of the lens sees a pixel at one time, all others do at
+ * all times: lens and time are drawn independently. */
 #include "sensor/private.h"
 
 struct moving {
@@ -54,7 +54,8 @@ static float density(const void *self, sr_vec3 d, float distance, float time)
     sr_motion_at(&s->motion, time, &t);
     sr_vec3 own = sr_inverse_vector(&t, d);
     float length = sr_length(own);
-    return s->still.model->density(s->still.self, sr_scale(1 / length, own), length * distance, time) * determinant(&t) / length;
+    return s->still.model->density(s->still.self, sr_scale(1 / length, own), length * distance, time) *
+           determinant(&t) / length;
 }
 
 static bool connect(const void *self, sr_vec3 p, float time, sr_vec2 u_lens, struct sr_sensor_view *view)
@@ -74,10 +75,15 @@ static bool connect(const void *self, sr_vec3 p, float time, sr_vec2 u_lens, str
 }
 
 /* Where paths from the lights cannot be told to the sensor that moves. */
-static const struct sr_sensor_model moving_model = {.name = "moving", .size = sizeof(struct moving), .ray = ray, .connect = connect, .density = density},
+static const struct sr_sensor_model moving_model = {.name = "moving",
+                                                    .size = sizeof(struct moving),
+                                                    .ray = ray,
+                                                    .connect = connect,
+                                                    .density = density},
                                     deaf_model = {.name = "moving", .size = sizeof(struct moving), .ray = ray};
 
-sr_status sr_sensor_move(struct sr_sensor still, const struct sr_motion *motion, struct sr_arena *arena, struct sr_sensor *out, struct sr_error *error)
+sr_status sr_sensor_move(struct sr_sensor still, const struct sr_motion *motion, struct sr_arena *arena,
+                         struct sr_sensor *out, struct sr_error *error)
 {
     struct moving *s = sr_arena_alloc(arena, sizeof *s);
     if (!s)

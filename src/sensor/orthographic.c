@@ -3,17 +3,17 @@
  *
  *     o = (x, y, 0) + l,     d ~ (0, 0, 1) - l / F
  *
- * (x, y) on the screen [m], l on the lens [m], F the distance to the plane that is sharp [m]. A pixel is as large across its
- * rays wherever it looks: weight = 1 / |(dx x dy) . d|. */
+ * (x, y) on the screen [m], l on the lens [m], F the distance to the plane that is sharp [m]. A pixel is as large
+ * across its rays wherever it looks: weight = 1 / |(dx x dy) . d|. */
 #include "sensor/private.h"
 
 struct orthographic {
     struct sr_sensor_common common;
     struct projection projection;
-    sr_vec3 o0, dx, dy;     // [m] origin = o0 + x dx + y dy, x and y in pixels
-    sr_vec3 lens_x, lens_y; // [m] from the lens' middle to its rim
-    sr_vec3 d;              // [1] along the camera's axis
-    float inv_focal;        // [1/m]
+    sr_vec3 o0, dx, dy;        // [m] origin = o0 + x dx + y dy, x and y in pixels
+    sr_vec3 lens_x, lens_y;    // [m] from the lens' middle to its rim
+    sr_vec3 d;                 // [1] along the camera's axis
+    float inv_focal;           // [1/m]
     sr_vec3 n, dual_x, dual_y; // across the screen; and the coordinates along dx and dy
 };
 
@@ -87,7 +87,10 @@ static bool connect(const void *self, sr_vec3 p, float time, sr_vec2 u_lens, str
     if (!(t > 0) || !(length > 0))
         return false;
     sr_vec3 o = sr_mad(p, -t, d), on_screen = sr_sub(sr_sub(o, s->o0), lens), w = sr_scale(1 / length, d);
-    *view = (struct sr_sensor_view){.p = o, .wi = sr_neg(w), .distance = t * length, .weight = density(self, w, t * length, time),
+    *view = (struct sr_sensor_view){.p = o,
+                                    .wi = sr_neg(w),
+                                    .distance = t * length,
+                                    .weight = density(self, w, t * length, time),
                                     .raster = {sr_dot(s->dual_x, on_screen), sr_dot(s->dual_y, on_screen)}};
     return view->weight < INFINITY;
 }

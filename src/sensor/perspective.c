@@ -16,11 +16,11 @@
 struct perspective {
     struct sr_sensor_common common;
     struct projection projection;
-    float fov;              // [deg] in the file
-    sr_vec3 origin;         // [m] in the world
-    sr_vec3 lens_x, lens_y; // [m] from the lens' middle to its rim
-    sr_vec3 d0, dx, dy;     // direction = d0 + x dx + y dy, x and y in pixels; length 1 along the camera's axis
-    float inv_focal;        // [1/m]
+    float fov;                 // [deg] in the file
+    sr_vec3 origin;            // [m] in the world
+    sr_vec3 lens_x, lens_y;    // [m] from the lens' middle to its rim
+    sr_vec3 d0, dx, dy;        // direction = d0 + x dx + y dy, x and y in pixels; length 1 along the camera's axis
+    float inv_focal;           // [1/m]
     sr_vec3 n, dual_x, dual_y; // across the screen; and the coordinates along dx and dy
     float K;
 };
@@ -75,7 +75,8 @@ static inline sr_vec3 origin(const struct perspective *s, sr_vec2 raster, sr_vec
 static bool bare_ray(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_time, struct sr_sensor_ray *out)
 {
     sr_vec3 d, o = origin(self, raster, u_lens, &d);
-    *out = (struct sr_sensor_ray){.ray = {.o = o, .d = sr_normalize(d), .time = u_time, .t_max = INFINITY}, .weight = 1};
+    *out =
+        (struct sr_sensor_ray){.ray = {.o = o, .d = sr_normalize(d), .time = u_time, .t_max = INFINITY}, .weight = 1};
     return true;
 }
 
@@ -113,7 +114,10 @@ static bool connect(const void *self, sr_vec3 p, float time, sr_vec2 u_lens, str
     if (!(t > 0) || !(distance > 0))
         return false;
     sr_vec3 on_screen = sr_sub(sr_mad(sr_scale(1 / t, to), s->inv_focal, lens), s->d0), w = sr_scale(1 / distance, to);
-    *view = (struct sr_sensor_view){.p = o, .wi = sr_neg(w), .distance = distance, .weight = density(self, w, distance, time),
+    *view = (struct sr_sensor_view){.p = o,
+                                    .wi = sr_neg(w),
+                                    .distance = distance,
+                                    .weight = density(self, w, distance, time),
                                     .raster = {sr_dot(s->dual_x, on_screen), sr_dot(s->dual_y, on_screen)}};
     return view->weight > 0 && view->weight < INFINITY;
 }

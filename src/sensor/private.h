@@ -5,8 +5,8 @@
 
 #include "sensor/sensor.h"
 
-extern const struct sr_sensor_model sr_sensor_perspective, sr_sensor_orthographic, sr_sensor_spherical, sr_sensor_fisheye,
-    sr_sensor_realistic;
+extern const struct sr_sensor_model sr_sensor_perspective, sr_sensor_orthographic, sr_sensor_spherical,
+    sr_sensor_fisheye, sr_sensor_realistic;
 
 /* Parameters of projective cameras, and the affine map from raster to screen that follows from them. */
 struct projection {

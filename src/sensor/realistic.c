@@ -3,20 +3,21 @@
  *
  *     E(film) = integral over the rear plane of T L cos^4(theta) / z^2 dA              [as L, times sr]
  *
- * z is the rear surface's distance from the film, theta the ray's angle there, T 1 where the ray gets through, or what the
- * aperture's image says at the stop. Points are drawn in a rectangle about the exit pupil as a film point at that distance from
- * the axis sees it, all directions round alike: of apertures that are not round, the disk about them. The lens is moved so that focusdistance from the film is sharp, by the Gaussian equation of its principal
- * planes: u (K - u) = f K, u from film to rear principal plane, K the sum of image and object distance.
- * C. Kolb, D. Mitchell & P. Hanrahan, A realistic camera model, 1995. Space: the film at z = 0, the scene toward +z.
- * Limits: one index for all wavelengths, no reflections within the lens; nobody knows which rays see a given point, so that
- * paths from lights cannot be told to it. */
+ * z is the rear surface's distance from the film, theta the ray's angle there, T 1 where the ray gets through, or what
+ * the aperture's image says at the stop. Points are drawn in a rectangle about the exit pupil as a film point at that
+ * distance from the axis sees it, all directions round alike: of apertures that are not round, the disk about them. The
+ * lens is moved so that focusdistance from the film is sharp, by the Gaussian equation of its principal planes: u (K -
+ * u) = f K, u from film to rear principal plane, K the sum of image and object distance. C. Kolb, D. Mitchell & P.
+ * Hanrahan, A realistic camera model, 1995. Space: the film at z = 0, the scene toward +z. Limits: one index for all
+ * wavelengths, no reflections within the lens; nobody knows which rays see a given point, so that paths from lights
+ * cannot be told to it. */
 #include "sensor/private.h"
 
 enum { RINGS = 64, GRID = 64 };
 
-struct surface { // in the order of a ray from the film
-    double radius;        // [m] > 0: bulges toward the scene; 0: the stop
-    double z, aperture2;  // [m] vertex, [m^2] square of the largest distance from the axis
+struct surface {         // in the order of a ray from the film
+    double radius;       // [m] > 0: bulges toward the scene; 0: the stop
+    double z, aperture2; // [m] vertex, [m^2] square of the largest distance from the axis
     double eta_rear, eta_front;
 };
 
@@ -34,15 +35,19 @@ struct realistic {
     struct surface *surfaces;
     uint32_t count;
     struct pupil pupils[RINGS];
-    double stop_reach2; // [1] in squares of the stop's radius
+    double stop_reach2;          // [1] in squares of the stop's radius
     float half_x, half_y, reach; // [m] of the film; its largest distance from the axis
 };
 
 static const struct sr_param params[] = {
-    {SR_PARAM_FILE, "lensfile", "1", 0, 0, NAN, offsetof(struct realistic, lens_file), "surfaces from the front: radius, thickness [mm], index, diameter [mm]"},
-    {SR_PARAM_FLOAT, "aperturediameter", "mm", 0, INFINITY, 1, offsetof(struct realistic, aperture_diameter), "of the stop"},
-    {SR_PARAM_FLOAT, "focusdistance", "m", 0, INFINITY, 10, offsetof(struct realistic, focus_distance), "from the film to what is sharp"},
-    {SR_PARAM_STRING, "aperture", "1", 0, 0, NAN, offsetof(struct realistic, aperture), "shape of the stop: gaussian, square, pentagon, star, or an image; round if not given"},
+    {SR_PARAM_FILE, "lensfile", "1", 0, 0, NAN, offsetof(struct realistic, lens_file),
+     "surfaces from the front: radius, thickness [mm], index, diameter [mm]"},
+    {SR_PARAM_FLOAT, "aperturediameter", "mm", 0, INFINITY, 1, offsetof(struct realistic, aperture_diameter),
+     "of the stop"},
+    {SR_PARAM_FLOAT, "focusdistance", "m", 0, INFINITY, 10, offsetof(struct realistic, focus_distance),
+     "from the film to what is sharp"},
+    {SR_PARAM_STRING, "aperture", "1", 0, 0, NAN, offsetof(struct realistic, aperture),
+     "shape of the stop: gaussian, square, pentagon, star, or an image; round if not given"},
     SENSOR_SHUTTER_ROWS(struct realistic),
     {0},
 };
@@ -67,7 +72,8 @@ static bool meet(const struct surface *s, struct line *r, double n[3])
         t = (s->z - r->o[2]) / r->d[2];
     } else {
         double c[3] = {r->o[0], r->o[1], r->o[2] - (s->z - s->radius)};
-        double b = c[0] * r->d[0] + c[1] * r->d[1] + c[2] * r->d[2], q = c[0] * c[0] + c[1] * c[1] + c[2] * c[2] - s->radius * s->radius;
+        double b = c[0] * r->d[0] + c[1] * r->d[1] + c[2] * r->d[2],
+               q = c[0] * c[0] + c[1] * c[1] + c[2] * c[2] - s->radius * s->radius;
         double root = b * b - q;
         if (root < 0)
             return false;
@@ -119,14 +125,16 @@ static double reach_of(const struct sr_sensor_lens *l)
     for (uint32_t j = 0; j < l->aperture_height; ++j)
         for (uint32_t i = 0; i < l->aperture_width; ++i) {
             // half a texel more, and as much again where it fades into the next
-            double x = fabs(2 * (i + 0.5) / l->aperture_width - 1) + 2.0 / l->aperture_width, y = fabs(2 * (j + 0.5) / l->aperture_height - 1) + 2.0 / l->aperture_height;
+            double x = fabs(2 * (i + 0.5) / l->aperture_width - 1) + 2.0 / l->aperture_width,
+                   y = fabs(2 * (j + 0.5) / l->aperture_height - 1) + 2.0 / l->aperture_height;
             if (l->aperture[(size_t)j * l->aperture_width + i] > 0)
                 reach2 = fmax(reach2, x * x + y * y);
         }
     return reach2;
 }
 
-/* Through the lens, from the film or from the scene; what share gets through. As a whole: the stop is the disk about its shape. */
+/* Through the lens, from the film or from the scene; what share gets through. As a whole: the stop is the disk about
+ * its shape. */
 static double pass(const struct realistic *s, struct line *r, bool from_film, bool as_whole)
 {
     double share = 1, n[3];
@@ -163,13 +171,17 @@ static sr_status read_surfaces(struct realistic *s, struct sr_arena *arena, stru
         const float *e = v + 4 * (size_t)(s->count - 1 - k), *before = k + 1 < s->count ? e - 4 : NULL;
         double radius = 5e-4 * (double)(e[0] == 0 ? sr_min(e[3], s->aperture_diameter) : e[3]);
         z += 1e-3 * (double)e[1];
-        s->surfaces[k] = (struct surface){.radius = 1e-3 * (double)e[0], .z = z, .aperture2 = radius * radius, .eta_rear = e[2] == 0 ? 1 : (double)e[2],
+        s->surfaces[k] = (struct surface){.radius = 1e-3 * (double)e[0],
+                                          .z = z,
+                                          .aperture2 = radius * radius,
+                                          .eta_rear = e[2] == 0 ? 1 : (double)e[2],
                                           .eta_front = before && before[2] != 0 ? (double)before[2] : 1};
     }
     return SR_OK;
 }
 
-/* Where a ray that comes in parallel to the axis crosses it (focus), and where its two straight parts meet (principal plane). */
+/* Where a ray that comes in parallel to the axis crosses it (focus), and where its two straight parts meet (principal
+ * plane). */
 static bool cardinal_points(const struct realistic *s, bool from_film, double x, double *focus, double *plane)
 {
     double front = s->surfaces[s->count - 1].z;
@@ -184,15 +196,19 @@ static bool cardinal_points(const struct realistic *s, bool from_film, double x,
 static sr_status focus(struct realistic *s, struct sr_error *error)
 {
     double rear_focus, rear_plane, front_focus, front_plane, x = 0.001 * (double)s->lens.diagonal;
-    if (!cardinal_points(s, false, x, &rear_focus, &rear_plane) || !cardinal_points(s, true, x, &front_focus, &front_plane))
+    if (!cardinal_points(s, false, x, &rear_focus, &rear_plane) ||
+        !cardinal_points(s, true, x, &front_focus, &front_plane))
         return sr_fail(error, SR_ERROR_INPUT, "lensfile: rays near the axis do not get through the lens");
     double f = rear_plane - rear_focus, K = (double)s->focus_distance + rear_plane - front_plane;
     if (!(f > 0) || !(K > 4 * f))
-        return sr_fail(error, SR_ERROR_INPUT, "focusdistance %g m is too short for a lens of the focal length %.4g mm: expected more than %.4g m",
-                       (double)s->focus_distance, 1e3 * f, 4 * f - rear_plane + front_plane);
+        return sr_fail(
+            error, SR_ERROR_INPUT,
+            "focusdistance %g m is too short for a lens of the focal length %.4g mm: expected more than %.4g m",
+            (double)s->focus_distance, 1e3 * f, 4 * f - rear_plane + front_plane);
     double shift = 0.5 * (K - sqrt(K * (K - 4 * f))) - rear_plane;
     if (!(s->surfaces[0].z + shift > 0))
-        return sr_fail(error, SR_ERROR_INPUT, "lensfile: to be sharp at %g m the lens would stand behind the film", (double)s->focus_distance);
+        return sr_fail(error, SR_ERROR_INPUT, "lensfile: to be sharp at %g m the lens would stand behind the film",
+                       (double)s->focus_distance);
     for (uint32_t k = 0; k < s->count; ++k)
         s->surfaces[k].z += shift;
     return SR_OK;
@@ -216,7 +232,8 @@ static bool bound(const struct realistic *s, double r0, double r1, struct pupil 
         for (int i = 0; i < GRID; ++i) {
             float x = in.x0 + ((float)i + 0.5f) * dx, y = in.y0 + ((float)j + 0.5f) * dy;
             bool is_within = x >= out->x0 && x <= out->x1 && y >= out->y0 && y <= out->y1;
-            if (is_within || !(sees(s, r0, (double)x, (double)y) || sees(s, r1, (double)x, (double)y) || sees(s, 0.5 * (r0 + r1), (double)x, (double)y)))
+            if (is_within || !(sees(s, r0, (double)x, (double)y) || sees(s, r1, (double)x, (double)y) ||
+                               sees(s, 0.5 * (r0 + r1), (double)x, (double)y)))
                 continue;
             *out = (struct pupil){sr_min(out->x0, x), sr_max(out->x1, x), sr_min(out->y0, y), sr_max(out->y1, y)};
         }
@@ -241,24 +258,31 @@ static void find_pupils(struct realistic *s)
 static sr_status check_surfaces(const struct sr_sensor_lens *l, struct sr_error *error)
 {
     if (l->surface_count < 1)
-        return sr_fail(error, SR_ERROR_INPUT, "expected \"string lensfile\", with four numbers for each surface of the lens");
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "expected \"string lensfile\", with four numbers for each surface of the lens");
     for (uint32_t i = 0; i < l->surface_count; ++i) {
         const float *e = l->surfaces + 4 * (size_t)i;
-        if (!isfinite(e[0]) || !(e[1] >= 0) || !isfinite(e[1]) || !(e[2] == 0 || (e[2] >= 1 && e[2] < 10)) || !(e[3] > 0) || !isfinite(e[3]))
-            return sr_fail(error, SR_ERROR_INPUT, "lensfile: surface %u is %g %g %g %g: expected a radius, a thickness of 0 or more [mm], an index of 1 to 10 or 0 "
-                           "for air, and a positive diameter [mm]", (unsigned)i + 1, (double)e[0], (double)e[1], (double)e[2], (double)e[3]);
+        if (!isfinite(e[0]) || !(e[1] >= 0) || !isfinite(e[1]) || !(e[2] == 0 || (e[2] >= 1 && e[2] < 10)) ||
+            !(e[3] > 0) || !isfinite(e[3]))
+            return sr_fail(
+                error, SR_ERROR_INPUT,
+                "lensfile: surface %u is %g %g %g %g: expected a radius, a thickness of 0 or more [mm], an index of 1 to 10 or 0 "
+                "for air, and a positive diameter [mm]",
+                (unsigned)i + 1, (double)e[0], (double)e[1], (double)e[2], (double)e[3]);
     }
     return SR_OK;
 }
 
-static sr_status prepare(void *self, struct sr_sensor_raster raster, const struct sr_transform *camera_to_world, struct sr_arena *arena, struct sr_error *error)
+static sr_status prepare(void *self, struct sr_sensor_raster raster, const struct sr_transform *camera_to_world,
+                         struct sr_arena *arena, struct sr_error *error)
 {
     struct realistic *s = self;
-    if (sensor_common_prepare(&s->common, raster, camera_to_world, error) != SR_OK || check_surfaces(&s->lens, error) != SR_OK)
+    if (sensor_common_prepare(&s->common, raster, camera_to_world, error) != SR_OK ||
+        check_surfaces(&s->lens, error) != SR_OK)
         return error->status;
     if (!(s->aperture_diameter > 0) || !(s->lens.diagonal > 0) || !isfinite(s->lens.diagonal))
-        return sr_fail(error, SR_ERROR_INPUT, "aperturediameter %g mm and the film's diagonal %g mm must be positive", (double)s->aperture_diameter,
-                       1e3 * (double)s->lens.diagonal);
+        return sr_fail(error, SR_ERROR_INPUT, "aperturediameter %g mm and the film's diagonal %g mm must be positive",
+                       (double)s->aperture_diameter, 1e3 * (double)s->lens.diagonal);
     float width = (float)raster.width, height = (float)raster.height, pixel = s->lens.diagonal / hypotf(width, height);
     s->stop_reach2 = s->lens.aperture ? reach_of(&s->lens) : 1;
     s->half_x = 0.5f * pixel * width;
@@ -275,12 +299,14 @@ static sr_status prepare(void *self, struct sr_sensor_raster raster, const struc
 static bool bare_ray(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_time, struct sr_sensor_ray *out)
 {
     const struct realistic *s = self;
-    float x = s->half_x * (1 - 2 * raster.x / (float)s->common.raster.width), y = s->half_y * (2 * raster.y / (float)s->common.raster.height - 1);
+    float x = s->half_x * (1 - 2 * raster.x / (float)s->common.raster.width),
+          y = s->half_y * (2 * raster.y / (float)s->common.raster.height - 1);
     float r = hypotf(x, y), c = r > 0 ? x / r : 1, sine = r > 0 ? y / r : 0;
     int ring = (int)(r / s->reach * RINGS);
     const struct pupil *p = &s->pupils[ring < RINGS ? ring : RINGS - 1];
     float a = sr_lerp(u_lens.x, p->x0, p->x1), b = sr_lerp(u_lens.y, p->y0, p->y1), z = (float)s->surfaces[0].z;
-    struct line l = {{(double)x, (double)y, 0}, {(double)(c * a - sine * b - x), (double)(sine * a + c * b - y), (double)z}};
+    struct line l = {{(double)x, (double)y, 0},
+                     {(double)(c * a - sine * b - x), (double)(sine * a + c * b - y), (double)z}};
     normalize(l.d);
     float cosine = (float)l.d[2], share = (float)pass(s, &l, true, false);
     if (!(share > 0))
@@ -288,7 +314,10 @@ static bool bare_ray(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_t
     const struct sr_transform *t = &s->common.camera_to_world;
     sr_vec3 o = {(float)l.o[0], (float)l.o[1], (float)l.o[2]}, d = {(float)l.d[0], (float)l.d[1], (float)l.d[2]};
     *out = (struct sr_sensor_ray){
-        .ray = {.o = sr_transform_point(t, o), .d = sr_normalize(sr_transform_vector(t, d)), .time = u_time, .t_max = INFINITY},
+        .ray = {.o = sr_transform_point(t, o),
+                .d = sr_normalize(sr_transform_vector(t, d)),
+                .time = u_time,
+                .t_max = INFINITY},
         .weight = share * sr_sqr(sr_sqr(cosine)) * (p->x1 - p->x0) * (p->y1 - p->y0) / (z * z),
     };
     return true;

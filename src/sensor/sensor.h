@@ -14,10 +14,10 @@ struct sr_sensor_ray {
     float weight;       // [1] of the radiance that the ray brings
 };
 
-/* How a sensor sees a point, were nothing in between: one of its rays, backwards. What the picture gains by radiance L that
- * leaves a surface element dA at the point is L weight |cos theta| dA, at the place `raster`, in [radiance pixel^2]: a pixel
- * is the mean of that over its filter, which has the integral 1 over [pixel^2]. That is Veach's importance We, in the
- * convention of films whose pixels are radiances. */
+/* How a sensor sees a point, were nothing in between: one of its rays, backwards. What the picture gains by radiance L
+ * that leaves a surface element dA at the point is L weight |cos theta| dA, at the place `raster`, in [radiance
+ * pixel^2]: a pixel is the mean of that over its filter, which has the integral 1 over [pixel^2]. That is Veach's
+ * importance We, in the convention of films whose pixels are radiances. */
 struct sr_sensor_view {
     sr_vec3 p;      // [m] where the ray begins
     sr_vec3 wi;     // [1] from the point toward it
@@ -48,7 +48,8 @@ struct sr_sensor_model {
                          struct sr_arena *arena, struct sr_error *error);
     /* raster: position in pixels, (0,0) the upper left corner; u_lens, u_time uniform. false: no light comes */
     bool (*ray)(const void *self, sr_vec2 raster, sr_vec2 u_lens, float u_time, struct sr_sensor_ray *out);
-    /* The ray through a point of the lens that meets p; false: there is none. NULL, and density NULL: nobody knows it. */
+    /* The ray through a point of the lens that meets p; false: there is none. NULL, and density NULL: nobody knows it.
+     */
     bool (*connect)(const void *self, sr_vec3 p, float time, sr_vec2 u_lens, struct sr_sensor_view *view);
     /* The same weight, of a ray's direction, at a distance along it [pixel^2/m^2]. */
     float (*density)(const void *self, sr_vec3 d, float distance, float time);
@@ -64,18 +65,21 @@ struct sr_sensor {
 };
 
 /* A sensor that moves: `still` has been prepared in its own space, and motion leads from there to the world. */
-sr_status sr_sensor_move(struct sr_sensor still, const struct sr_motion *motion, struct sr_arena *arena, struct sr_sensor *out, struct sr_error *error);
+sr_status sr_sensor_move(struct sr_sensor still, const struct sr_motion *motion, struct sr_arena *arena,
+                         struct sr_sensor *out, struct sr_error *error);
 
 /* ---- fisheye projections: fisheye.c; rim: the angle from the axis at the rim of the disk [rad] ---- */
 
 enum sr_fisheye { SR_FISHEYE_EQUIDISTANT, SR_FISHEYE_EQUISOLID, SR_FISHEYE_ORTHOGRAPHIC, SR_FISHEYE_STEREOGRAPHIC };
 double sr_fisheye_angle(enum sr_fisheye kind, double r, double rim); // [rad] from the axis, r = 1 at the rim
-/* The direction in the camera's space (z forward, y up) of a point of the picture [pixel]; false: more than three pixels outside of the
- * disk. */
-bool sr_fisheye_direction(enum sr_fisheye kind, double rim, struct sr_sensor_raster raster, double x, double y, double d[3]);
-/* The solid angle [sr] that a pixel sees, exactly, and that weighed by cos theta; NaN for the latter where the disk sees
- * behind. */
-void sr_fisheye_pixel(enum sr_fisheye kind, double rim, struct sr_sensor_raster raster, uint32_t x, uint32_t y, double *omega, double *projected);
+/* The direction in the camera's space (z forward, y up) of a point of the picture [pixel]; false: more than three
+ * pixels outside of the disk. */
+bool sr_fisheye_direction(enum sr_fisheye kind, double rim, struct sr_sensor_raster raster, double x, double y,
+                          double d[3]);
+/* The solid angle [sr] that a pixel sees, exactly, and that weighed by cos theta; NaN for the latter where the disk
+ * sees behind. */
+void sr_fisheye_pixel(enum sr_fisheye kind, double rim, struct sr_sensor_raster raster, uint32_t x, uint32_t y,
+                      double *omega, double *projected);
 
 /* Common to the projective cameras (perspective, orthographic); their params tables list these too. Each camera's
  * struct begins with struct sr_sensor_common. */

@@ -5,8 +5,8 @@
  *                       d = (sin theta cos phi, cos theta, sin theta sin phi)
  *     equalarea         Clarberg's octahedral square (2008), its pole z turned to y: all pixels see alike [sr]
  *
- * Pixels for each solid angle: width height / (4 pi), or width height / (2 pi^2 sin theta). Limits: a point is seen once, in
- * the picture, also by pixels at its border whose wide filter reaches over it. */
+ * Pixels for each solid angle: width height / (4 pi), or width height / (2 pi^2 sin theta). Limits: a point is seen
+ * once, in the picture, also by pixels at its border whose wide filter reaches over it. */
 #include "sensor/private.h"
 
 enum { EQUAL_AREA, EQUIRECTANGULAR };
@@ -37,7 +37,8 @@ static sr_status prepare(void *self, struct sr_sensor_raster raster, const struc
     s->inv_width = 1 / (float)raster.width;
     s->inv_height = 1 / (float)raster.height;
     const struct sr_transform *t = camera_to_world;
-    sr_vec3 x = {t->inverse[0][0], t->inverse[0][1], t->inverse[0][2]}, y = {t->inverse[1][0], t->inverse[1][1], t->inverse[1][2]},
+    sr_vec3 x = {t->inverse[0][0], t->inverse[0][1], t->inverse[0][2]},
+            y = {t->inverse[1][0], t->inverse[1][1], t->inverse[1][2]},
             z = {t->inverse[2][0], t->inverse[2][1], t->inverse[2][2]};
     s->determinant = fabsf(sr_dot(x, sr_cross(y, z)));
     return SR_OK;
@@ -87,7 +88,8 @@ static float density(const void *self, sr_vec3 d, float distance, float time)
     sr_vec3 local = sr_inverse_vector(&s->common.camera_to_world, d);
     float length = sr_length(local), pixels = 1 / (s->inv_width * s->inv_height);
     float per_sr = s->mapping == EQUAL_AREA ? pixels * (SR_INV_PI / 4)
-                                            : pixels * (SR_INV_PI * SR_INV_PI / 2) / sr_max(sqrtf(sr_sqr(local.x) + sr_sqr(local.z)) / length, 1e-6f);
+                                            : pixels * (SR_INV_PI * SR_INV_PI / 2) /
+                                                  sr_max(sqrtf(sr_sqr(local.x) + sr_sqr(local.z)) / length, 1e-6f);
     return per_sr * s->determinant / (length * length * length * distance * distance);
 }
 
@@ -104,8 +106,12 @@ static bool connect(const void *self, sr_vec3 p, float time, sr_vec2 u_lens, str
     if (s->mapping == EQUAL_AREA)
         square = sr_equal_area_sphere_to_square((sr_vec3){local.x, local.z, local.y});
     else
-        square = (sr_vec2){sr_angle_of(local.z, local.x) * (0.5f * SR_INV_PI), acosf(sr_clamp(local.y, -1, 1)) * SR_INV_PI};
-    *view = (struct sr_sensor_view){.p = s->origin, .wi = sr_neg(w), .distance = distance, .weight = density(self, w, distance, time),
+        square =
+            (sr_vec2){sr_angle_of(local.z, local.x) * (0.5f * SR_INV_PI), acosf(sr_clamp(local.y, -1, 1)) * SR_INV_PI};
+    *view = (struct sr_sensor_view){.p = s->origin,
+                                    .wi = sr_neg(w),
+                                    .distance = distance,
+                                    .weight = density(self, w, distance, time),
                                     .raster = {square.x / s->inv_width, square.y / s->inv_height}};
     return view->weight < INFINITY;
 }

@@ -9,8 +9,8 @@
  *
  * Sampled toward a point: rectangles uniformly in solid angle (C. Urena et al. 2013) times the bilinear weight of the
  * receiver's cosine; all others, and rectangles that look small, by area: uniformly if parallelograms, else with the
- * density of |dpdu x dpdv| at the corners, bilinearly between (M. Pharr, W. Jakob, G. Humphreys, Physically Based Rendering,
- * 4th ed. 2023, 6.6). A patch without area is never sampled. */
+ * density of |dpdu x dpdv| at the corners, bilinearly between (M. Pharr, W. Jakob, G. Humphreys, Physically Based
+ * Rendering, 4th ed. 2023, 6.6). A patch without area is never sampled. */
 #include "shape/mesh.h"
 #include "shape/quadric.h"
 
@@ -118,7 +118,8 @@ static sr_status prepare(void *self, const struct sr_shape_placement *placement,
                          struct sr_error *error)
 {
     struct sr_shape_patches *m = self;
-    const struct sr_mesh_arrays a = {"bilinearmesh", 4, &m->indices, &m->P, &m->N, NULL, &m->uv, &m->face_indices, &m->left_out};
+    const struct sr_mesh_arrays a = {"bilinearmesh", 4,      &m->indices,      &m->P,       &m->N,
+                                     NULL,           &m->uv, &m->face_indices, &m->left_out};
     sr_status status = sr_mesh_place(&a, placement, &m->flip_normals, arena, error);
     if (status != SR_OK)
         return status;
@@ -342,13 +343,15 @@ static void point(const void *self, uint32_t primitive, sr_vec2 hit, struct sr_p
     x->dndv = dndv;
 }
 
-/* Whether the patch is drawn by solid angle as seen from p, and with which density [1/sr]. The same in sample and pdf. */
+/* Whether the patch is drawn by solid angle as seen from p, and with which density [1/sr]. The same in sample and pdf.
+ */
 static inline bool by_solid_angle(const struct sr_shape_patches *m, uint32_t primitive, const sr_vec3 v[4], sr_vec3 p,
                                   float *pdf)
 {
     if (m->kinds[primitive] != RECTANGLE)
         return false;
-    float a2 = sr_length2(sr_sub(v[0], p)), b2 = sr_length2(sr_sub(v[1], p)), c2 = sr_length2(sr_sub(v[2], p)), d2 = sr_length2(sr_sub(v[3], p));
+    float a2 = sr_length2(sr_sub(v[0], p)), b2 = sr_length2(sr_sub(v[1], p)), c2 = sr_length2(sr_sub(v[2], p)),
+          d2 = sr_length2(sr_sub(v[3], p));
     if (sr_length2(sr_sub(v[3], v[0])) < small_extent2 * sr_min(sr_min(a2, b2), sr_min(c2, d2)))
         return false;
     *pdf = sr_spherical_rectangle_pdf(p, v[0], sr_sub(v[1], v[0]), sr_sub(v[2], v[0]));

@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /* Curves: strips about cubic Bézier segments that turn to whoever looks, as pbrt-v4 means them.
  *
- *     c(u) = a0 + a1 u + a2 u^2 + a3 u^3 [m],  u in 0 … 1 along each segment       b = d x c'(u) / |...|   across, seen along d
- *     p = c(u) + (v - 1/2) h(u) b [m],  v in 0 … 1 across                          h = h0 + (h1 - h0) u    width [m]
+ *     c(u) = a0 + a1 u + a2 u^2 + a3 u^3 [m],  u in 0 … 1 along each segment       b = d x c'(u) / |...|   across, seen
+ * along d p = c(u) + (v - 1/2) h(u) b [m],  v in 0 … 1 across                          h = h0 + (h1 - h0) u    width
+ * [m]
  *
- * h is linear in u along the whole curve. n = dp/du x dp/dv, which for flat curves points away from the viewer. Of cylinders
- * dp/dv is turned by 180 deg (1/2 - v) about c', so that n is that of a tube; p stays in the strip. Of ribbons h is narrowed to
- * h |N . d|, N going from one end's normal to the other's on the great circle, and dp/dv = h N x c' / |...|.
- * A ray meets the strip where the projection of c along d is nearest to it, found on chords no further than h/20 from c and
- * two steps of Newton beyond. M. Pharr, W. Jakob, G. Humphreys, Physically Based Rendering, 4th ed. 2023, section 6.7;
- * K. Nakamaru and Y. Ohno, Ray tracing for curves primitive, 2002.
- * Limits: rays leave from a whole width off the strip, so that it never meets them anew. No light is drawn from curves. */
+ * h is linear in u along the whole curve. n = dp/du x dp/dv, which for flat curves points away from the viewer. Of
+ * cylinders dp/dv is turned by 180 deg (1/2 - v) about c', so that n is that of a tube; p stays in the strip. Of
+ * ribbons h is narrowed to h |N . d|, N going from one end's normal to the other's on the great circle, and dp/dv = h N
+ * x c' / |...|. A ray meets the strip where the projection of c along d is nearest to it, found on chords no further
+ * than h/20 from c and two steps of Newton beyond. M. Pharr, W. Jakob, G. Humphreys, Physically Based Rendering, 4th
+ * ed. 2023, section 6.7; K. Nakamaru and Y. Ohno, Ray tracing for curves primitive, 2002. Limits: rays leave from a
+ * whole width off the strip, so that it never meets them anew. No light is drawn from curves. */
 #include "shape/shape.h"
 
 #include <string.h>
@@ -29,7 +30,8 @@ static const struct sr_param params[] = {
     {SR_PARAM_POINT3S, "P", "m", -INFINITY, INFINITY, NAN, offsetof(C, one.P),
      "control points: degree + 1, and for each further segment degree (bezier) or one (bspline)"},
     {SR_PARAM_ENUM, "type", "1", 0, 2, FLAT, offsetof(C, one.type), "flat|ribbon|cylinder"},
-    {SR_PARAM_NORMAL3S, "N", "1", -INFINITY, INFINITY, NAN, offsetof(C, one.N), "normals at the segments' ends, of ribbons"},
+    {SR_PARAM_NORMAL3S, "N", "1", -INFINITY, INFINITY, NAN, offsetof(C, one.N),
+     "normals at the segments' ends, of ribbons"},
     {SR_PARAM_INT, "splitdepth", "1", 0, 10, 3, offsetof(C, one.split_depth), "at most 2^splitdepth boxes a segment"},
     {0},
 };
@@ -58,12 +60,15 @@ uint32_t sr_shape_curve_segments(const struct sr_shape_curve *c, struct sr_error
     uint32_t segments = n < degree + 1 ? 0 : is_bezier ? (n - 1) / degree : n - degree;
     if (segments == 0 || (is_bezier && (n - 1) % degree != 0)) {
         sr_fail(error, SR_ERROR_INPUT, "curve: %u \"P\", expected %u%s of degree %u", n, degree + 1,
-                is_bezier ? (degree == 2 ? " or 2 more for each further Bézier segment" : " or 3 more for each further Bézier segment")
-                          : " or more for a B-spline", degree);
+                is_bezier ? (degree == 2 ? " or 2 more for each further Bézier segment"
+                                         : " or 3 more for each further Bézier segment")
+                          : " or more for a B-spline",
+                degree);
         return 0;
     }
     if (c->type == RIBBON && c->N.count != segments + 1) {
-        sr_fail(error, SR_ERROR_INPUT, "curve: %u \"N\", expected %u, one at each end of the %u segments of a ribbon", c->N.count, segments + 1, segments);
+        sr_fail(error, SR_ERROR_INPUT, "curve: %u \"N\", expected %u, one at each end of the %u segments of a ribbon",
+                c->N.count, segments + 1, segments);
         return 0;
     }
     const float *p = c->P.data, *normals = c->N.data;
@@ -75,7 +80,8 @@ uint32_t sr_shape_curve_segments(const struct sr_shape_curve *c, struct sr_error
     for (uint32_t i = 0; c->type == RIBBON && i < c->N.count; ++i)
         is_finite &= sr_length2(((const sr_vec3 *)c->N.data)[i]) > 0;
     if (!is_finite) {
-        sr_fail(error, SR_ERROR_INPUT, "curve: \"P\" and widths must be finite numbers, and so must \"N\", of which none is 0");
+        sr_fail(error, SR_ERROR_INPUT,
+                "curve: \"P\" and widths must be finite numbers, and so must \"N\", of which none is 0");
         return 0;
     }
     return segments;
@@ -93,9 +99,11 @@ static sr_vec3 combine(const sr_vec3 *p, int n, const float *w)
 static void powers(const struct sr_shape_curve *c, const sr_vec3 *p, sr_vec3 a[4])
 {
     static const float sixth = 1.0f / 6;
-    static const float cubic[2][4][4] = {{{1, 0, 0, 0}, {-3, 3, 0, 0}, {3, -6, 3, 0}, {-1, 3, -3, 1}},
-                                         {{sixth, 4 * sixth, sixth, 0}, {-0.5f, 0, 0.5f, 0}, {0.5f, -1, 0.5f, 0}, {-sixth, 0.5f, -0.5f, sixth}}};
-    static const float quadratic[2][3][3] = {{{1, 0, 0}, {-2, 2, 0}, {1, -2, 1}}, {{0.5f, 0.5f, 0}, {-1, 1, 0}, {0.5f, -1, 0.5f}}};
+    static const float cubic[2][4][4] = {
+        {{1, 0, 0, 0}, {-3, 3, 0, 0}, {3, -6, 3, 0}, {-1, 3, -3, 1}},
+        {{sixth, 4 * sixth, sixth, 0}, {-0.5f, 0, 0.5f, 0}, {0.5f, -1, 0.5f, 0}, {-sixth, 0.5f, -0.5f, sixth}}};
+    static const float quadratic[2][3][3] = {{{1, 0, 0}, {-2, 2, 0}, {1, -2, 1}},
+                                             {{0.5f, 0.5f, 0}, {-1, 1, 0}, {0.5f, -1, 0.5f}}};
     a[3] = (sr_vec3){0, 0, 0};
     for (int k = 0; k <= c->degree; ++k)
         a[k] = combine(p, c->degree + 1, c->degree == 3 ? cubic[c->basis][k] : quadratic[c->basis][k]);
@@ -107,7 +115,8 @@ static struct sr_shape_curve_segment segment_of(const struct sr_shape_curve *c, 
     float width0 = isnan(c->width0) ? c->width : c->width0, width1 = isnan(c->width1) ? c->width : c->width1;
     uint32_t first = c->basis == BEZIER ? i * (uint32_t)c->degree : i;
     powers(c, (const sr_vec3 *)c->P.data + first, s.a);
-    float start = sr_lerp((float)i / (float)segments, width0, width1), end = sr_lerp((float)(i + 1) / (float)segments, width0, width1);
+    float start = sr_lerp((float)i / (float)segments, width0, width1),
+          end = sr_lerp((float)(i + 1) / (float)segments, width0, width1);
     s.width0 = start;
     s.dh = end - start;
     s.bend = 0.2501f * sqrtf(sr_max(sr_length2(s.a[2]), sr_length2(sr_mad(s.a[2], 3, s.a[3])))); // |c''| / 8
@@ -149,7 +158,8 @@ static struct sr_box box_of(const struct sr_shape_curves *m, const struct piece 
     float third = (p->u1 - p->u0) / 3;
     sr_vec3 start = centre_at(s->a, p->u0), end = centre_at(s->a, p->u1);
     struct sr_box b = sr_box_add(sr_box_add(sr_box_empty(), start), end);
-    b = sr_box_add(sr_box_add(b, sr_mad(start, third, tangent_at(s->a, p->u0))), sr_mad(end, -third, tangent_at(s->a, p->u1)));
+    b = sr_box_add(sr_box_add(b, sr_mad(start, third, tangent_at(s->a, p->u0))),
+                   sr_mad(end, -third, tangent_at(s->a, p->u1)));
     float half = 0.5f * sr_max(s->width0 + p->u0 * s->dh, s->width0 + p->u1 * s->dh);
     float largest = sr_max_component(larger3(b.lo, b.hi));
     half += 8 * SR_MACHINE_EPSILON * (largest + half) + 1e-37f;
@@ -192,8 +202,9 @@ static bool is_similarity(const struct sr_transform *t, float *scale)
     float l2 = sr_dot(c[0], c[0]), tolerance = 1e-5f * l2;
     *scale = sqrtf(l2);
     return m[3][0] == 0 && m[3][1] == 0 && m[3][2] == 0 && m[3][3] == 1 && !sr_transform_swaps_handedness(t) &&
-           fabsf(sr_dot(c[1], c[1]) - l2) <= tolerance && fabsf(sr_dot(c[2], c[2]) - l2) <= tolerance && fabsf(sr_dot(c[0], c[1])) <= tolerance &&
-           fabsf(sr_dot(c[1], c[2])) <= tolerance && fabsf(sr_dot(c[2], c[0])) <= tolerance;
+           fabsf(sr_dot(c[1], c[1]) - l2) <= tolerance && fabsf(sr_dot(c[2], c[2]) - l2) <= tolerance &&
+           fabsf(sr_dot(c[0], c[1])) <= tolerance && fabsf(sr_dot(c[1], c[2])) <= tolerance &&
+           fabsf(sr_dot(c[2], c[0])) <= tolerance;
 }
 
 static void place(struct sr_shape_curves *m, struct sr_shape_curve_segment *s, struct ribbon_normals *normals)
@@ -215,8 +226,9 @@ static void place(struct sr_shape_curves *m, struct sr_shape_curve_segment *s, s
     }
 }
 
-sr_status sr_shape_curves_make(const struct sr_shape_curve *curves, uint32_t count, const struct sr_shape_placement *placement,
-                               struct sr_arena *arena, struct sr_shape_curves *out, struct sr_error *error)
+sr_status sr_shape_curves_make(const struct sr_shape_curve *curves, uint32_t count,
+                               const struct sr_shape_placement *placement, struct sr_arena *arena,
+                               struct sr_shape_curves *out, struct sr_error *error)
 {
     uint64_t total = 0;
     for (uint32_t i = 0; i < count; ++i) {
@@ -226,7 +238,8 @@ sr_status sr_shape_curves_make(const struct sr_shape_curve *curves, uint32_t cou
         total += n;
     }
     if (total > MAX_SEGMENTS)
-        return sr_fail(error, SR_ERROR_INPUT, "curve: %llu segments, expected at most %d", (unsigned long long)total, MAX_SEGMENTS);
+        return sr_fail(error, SR_ERROR_INPUT, "curve: %llu segments, expected at most %d", (unsigned long long)total,
+                       MAX_SEGMENTS);
     if (!sr_transform_is_valid(&placement->object_to_world))
         return sr_fail(error, SR_ERROR_INPUT, "curve: the transform must be finite and invertible");
     bool is_ribbon = curves[0].type == RIBBON;
@@ -255,7 +268,8 @@ sr_status sr_shape_curves_make(const struct sr_shape_curve *curves, uint32_t cou
     return SR_OK;
 }
 
-static sr_status prepare(void *self, const struct sr_shape_placement *placement, struct sr_arena *arena, struct sr_error *error)
+static sr_status prepare(void *self, const struct sr_shape_placement *placement, struct sr_arena *arena,
+                         struct sr_error *error)
 {
     struct sr_shape_curves *m = self;
     struct sr_shape_curve one = m->one;
@@ -302,7 +316,8 @@ static float area(const void *self, uint32_t primitive)
 static sr_vec3 ribbon_normal(const struct ribbon_normals *r, float u)
 {
     sr_vec3 a = r->n[0], b = r->n[1], sum = sr_add(a, b), difference = sr_sub(b, a);
-    float half = sr_dot(a, b) < 0 ? SR_PI / 2 - asinf(sr_min(1, sr_length(sum) / 2)) : asinf(sr_min(1, sr_length(difference) / 2));
+    float half = sr_dot(a, b) < 0 ? SR_PI / 2 - asinf(sr_min(1, sr_length(sum) / 2))
+                                  : asinf(sr_min(1, sr_length(difference) / 2));
     float angle = 2 * half;
     if (angle == 0)
         return a;
@@ -319,7 +334,8 @@ static float width_at(const struct sr_shape_curves *m, const struct piece *p, fl
     return h * fabsf(sr_dot(*n, d));
 }
 
-/* A segment as the ray sees it: x along the chord's projection, y across, z along the ray, which is the line x = y = 0. */
+/* A segment as the ray sees it: x along the chord's projection, y across, z along the ray, which is the line x = y = 0.
+ */
 struct view {
     sr_vec3 a[4];
     sr_vec3 d; // [1] unit
@@ -364,8 +380,8 @@ static float dot2(sr_vec3 a, sr_vec3 b)
 }
 
 /* Where c seen along the ray is nearest to it, between the perpendiculars at both ends of a chord. */
-static bool meet_chord(const struct sr_shape_curves *m, const struct piece *piece, const struct view *view, float u0, float u1, sr_vec3 p0, sr_vec3 p1,
-                       struct meeting *x)
+static bool meet_chord(const struct sr_shape_curves *m, const struct piece *piece, const struct view *view, float u0,
+                       float u1, sr_vec3 p0, sr_vec3 p1, struct meeting *x)
 {
     sr_vec3 chord = sr_sub(p1, p0);
     float l2 = dot2(chord, chord);
@@ -389,7 +405,8 @@ static bool meet_chord(const struct sr_shape_curves *m, const struct piece *piec
     return true;
 }
 
-static bool intersect(const void *self, uint32_t primitive, sr_vec3 o, sr_vec3 d, float t_min, float t_max, float *t, sr_vec2 *hit)
+static bool intersect(const void *self, uint32_t primitive, sr_vec3 o, sr_vec3 d, float t_min, float t_max, float *t,
+                      sr_vec2 *hit)
 {
     const struct sr_shape_curves *m = self;
     struct piece piece = piece_of(m, primitive);
@@ -397,14 +414,16 @@ static bool intersect(const void *self, uint32_t primitive, sr_vec3 o, sr_vec3 d
         o = sr_inverse_point(&m->object_to_world, o);
         d = sr_inverse_vector(&m->object_to_world, d);
     }
-    float length = sr_length(d), half = 0.5f * sr_max(piece.segment->width0 + piece.u0 * piece.segment->dh, piece.segment->width0 + piece.u1 * piece.segment->dh);
+    float length = sr_length(d), half = 0.5f * sr_max(piece.segment->width0 + piece.u0 * piece.segment->dh,
+                                                      piece.segment->width0 + piece.u1 * piece.segment->dh);
     if (!(length > 0 && half > 0))
         return false;
     // most rays that come here pass further from the chord's line than the strip reaches
     float du = piece.u1 - piece.u0;
     sr_vec3 z = sr_scale(1 / length, d), start = centre_at(piece.segment->a, piece.u0), q = sr_sub(start, o);
     sr_vec3 across = sr_cross(z, sr_sub(centre_at(piece.segment->a, piece.u1), start));
-    float reach = half + piece.segment->bend * du * du + 8 * SR_MACHINE_EPSILON * (fabsf(q.x) + fabsf(q.y) + fabsf(q.z));
+    float reach =
+        half + piece.segment->bend * du * du + 8 * SR_MACHINE_EPSILON * (fabsf(q.x) + fabsf(q.y) + fabsf(q.z));
     if (sr_sqr(sr_dot(q, across)) > reach * reach * sr_length2(across))
         return false;
     struct view view;
@@ -419,8 +438,9 @@ static bool intersect(const void *self, uint32_t primitive, sr_vec3 o, sr_vec3 d
         sr_vec3 p1 = centre_at(view.a, u1), t1 = tangent_at(view.a, u1);
         sr_vec3 q0 = sr_mad(p0, du / 3, t0), q1 = sr_mad(p1, -du / 3, t1);
         struct meeting x;
-        if (!is_off(p0.y, q0.y, q1.y, p1.y, half) && !is_off(p0.x, q0.x, q1.x, p1.x, half) && dot2(p0, t0) <= 0 && dot2(p1, t1) >= 0 &&
-            meet_chord(m, &piece, &view, u0, u1, p0, p1, &x) && x.z > t_min * length && x.z < t_max * length) {
+        if (!is_off(p0.y, q0.y, q1.y, p1.y, half) && !is_off(p0.x, q0.x, q1.x, p1.x, half) && dot2(p0, t0) <= 0 &&
+            dot2(p1, t1) >= 0 && meet_chord(m, &piece, &view, u0, u1, p0, p1, &x) && x.z > t_min * length &&
+            x.z < t_max * length) {
             t_max = *t = x.z / length;
             *hit = (sr_vec2){x.u, x.v};
             found = true;

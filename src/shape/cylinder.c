@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The mantle of a cylinder between two heights and within an angle around z; it has no lids:
  *
- *     p = (r cos phi, r sin phi, z) [m]   u = phi / phi_max   v = (z - z_min) / (z_max - z_min) [1]   n away from the axis
+ *     p = (r cos phi, r sin phi, z) [m]   u = phi / phi_max   v = (z - z_min) / (z_max - z_min) [1]   n away from the
+ * axis
  *
  * The hit is (u, v). Drawn uniformly by area in object space; under unequal scales the density follows the Jacobian. */
 #include "shape/quadric.h"
@@ -150,7 +151,9 @@ static float area_pdf(const void *self, uint32_t primitive, const struct sr_poin
     const struct sr_shape_cylinder *c = self;
     sr_dvec3 p = sr_affine(c->quadric.to_object, sr_dvec(there->p), 1);
     double rho = sqrt(p.x * p.x + p.y * p.y);
-    return rho > 0 ? (float)(1 / (object_area(c) * sr_quadric_area_scale(&c->quadric, (sr_dvec3){p.x / rho, p.y / rho, 0}))) : 0;
+    return rho > 0
+               ? (float)(1 / (object_area(c) * sr_quadric_area_scale(&c->quadric, (sr_dvec3){p.x / rho, p.y / rho, 0})))
+               : 0;
 }
 
 static void normals(const void *self, uint32_t primitive, sr_vec3 *axis, float *cos_theta)

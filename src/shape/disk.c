@@ -3,8 +3,8 @@
  *
  *     p = (rho cos phi, rho sin phi, h) [m]   u = phi / phi_max   v = (r - rho) / (r - r_inner) [1]   n = +z
  *
- * Drawn uniformly by area: concentric squares (P. Shirley, K. Chiu 1997) for a whole disk, else rho^2 uniform. An affine
- * transform leaves it uniform. */
+ * Drawn uniformly by area: concentric squares (P. Shirley, K. Chiu 1997) for a whole disk, else rho^2 uniform. An
+ * affine transform leaves it uniform. */
 #include "shape/quadric.h"
 
 #define D struct sr_shape_disk

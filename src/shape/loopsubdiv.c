@@ -1,18 +1,20 @@
 /* SPDX-License-Identifier: MIT */
-/* Loop's subdivision surface: the control mesh is split `levels` times, then its vertices are moved to the limit surface.
+/* Loop's subdivision surface: the control mesh is split `levels` times, then its vertices are moved to the limit
+ * surface.
  *
  * One step splits each triangle into four. With n neighbours p_i of p, along boundaries the two neighbours b_i only:
  *     inside     p' = (1 - n beta) p + beta SUM p_i,  beta = 3/(8 n), 3/16 for n = 3     edge: (3 (p + q) + r + s) / 8
  *     boundary   p' = 3/4 p + 1/8 (b_0 + b_1)                                            edge: (p + q) / 2
  * Limit, the left eigenvector of eigenvalue 1:
- *     inside     p = (1 - n gamma) p + gamma SUM p_i,  gamma = 1 / (n + 3/(8 beta))      boundary   2/3 p + 1/6 (b_0 + b_1)
- * Tangents, those of the next ones: inside SUM cos(2 pi i/n) p_i and SUM sin(2 pi i/n) p_i; on a boundary with n neighbours
- * b_1 - b_0 and, with t = pi/(n-1), SUM sin(i t) p_i + k (b_0 + b_1) - (2 k + cot(t/2)) p, k = (sin t - cot(t/2)) / (1 + 2 cos t).
- * C. Loop, Smooth subdivision surfaces based on triangles, 1987; H. Hoppe and others, Piecewise smooth surface
- * reconstruction, 1994. N points against the winding, as in pbrt-v4. What is above is so where "unbiased" is true; else as in pbrt,
- * whose boundaries go to the limit by 3/5 and 1/5, and so stray from their own rule by 1/30 of a second difference, and whose
- * tangents are those of points that have been moved to the limit already: highlights of coarse meshes lie elsewhere.
- * Limits: each edge has one or two triangles, wound alike, and each vertex one fan of them. */
+ *     inside     p = (1 - n gamma) p + gamma SUM p_i,  gamma = 1 / (n + 3/(8 beta))      boundary   2/3 p + 1/6 (b_0 +
+ * b_1) Tangents, those of the next ones: inside SUM cos(2 pi i/n) p_i and SUM sin(2 pi i/n) p_i; on a boundary with n
+ * neighbours b_1 - b_0 and, with t = pi/(n-1), SUM sin(i t) p_i + k (b_0 + b_1) - (2 k + cot(t/2)) p, k = (sin t -
+ * cot(t/2)) / (1 + 2 cos t). C. Loop, Smooth subdivision surfaces based on triangles, 1987; H. Hoppe and others,
+ * Piecewise smooth surface reconstruction, 1994. N points against the winding, as in pbrt-v4. What is above is so where
+ * "unbiased" is true; else as in pbrt, whose boundaries go to the limit by 3/5 and 1/5, and so stray from their own
+ * rule by 1/30 of a second difference, and whose tangents are those of points that have been moved to the limit
+ * already: highlights of coarse meshes lie elsewhere. Limits: each edge has one or two triangles, wound alike, and each
+ * vertex one fan of them. */
 #include "shape/shape.h"
 
 #include <string.h>
@@ -25,7 +27,8 @@ static const struct sr_param params[] = {
     {SR_PARAM_INTS, "indices", "1", 0, INT32_MAX, NAN, offsetof(L, indices), "three vertices a triangle"},
     {SR_PARAM_POINT3S, "P", "m", -INFINITY, INFINITY, NAN, offsetof(L, P), "positions of the control vertices"},
     {SR_PARAM_ENUM, "scheme", "1", 0, 0, 0, offsetof(L, scheme), "loop"},
-    {SR_PARAM_BOOL, "unbiased", "1", 0, 1, 0, offsetof(L, unbiased), "points and normals of the limit surface itself; false: pbrt's, close to it"},
+    {SR_PARAM_BOOL, "unbiased", "1", 0, 1, 0, offsetof(L, unbiased),
+     "points and normals of the limit surface itself; false: pbrt's, close to it"},
     {0},
 };
 #undef L
@@ -217,14 +220,18 @@ static sr_status find_twins(struct net *m, struct sr_error *error)
                 break;
         }
         if (a == b) {
-            sr_fail(error, SR_ERROR_INPUT, "loopsubdiv: triangle %u has vertex %d twice, expected three different ones", h / 3, a);
+            sr_fail(error, SR_ERROR_INPUT, "loopsubdiv: triangle %u has vertex %d twice, expected three different ones",
+                    h / 3, a);
         } else if (!slots[slot]) {
             slots[slot] = h + 1;
         } else if (m->twin[other] >= 0) {
-            sr_fail(error, SR_ERROR_INPUT, "loopsubdiv: the edge from vertex %d to %d belongs to triangles %u, %d and %u, expected one or two",
+            sr_fail(error, SR_ERROR_INPUT,
+                    "loopsubdiv: the edge from vertex %d to %d belongs to triangles %u, %d and %u, expected one or two",
                     lo, hi, other / 3, m->twin[other] / 3, h / 3);
         } else if (m->corner[other] == a) {
-            sr_fail(error, SR_ERROR_INPUT, "loopsubdiv: triangles %u and %u are not wound alike: both go from vertex %d to %d", other / 3, h / 3, a, b);
+            sr_fail(error, SR_ERROR_INPUT,
+                    "loopsubdiv: triangles %u and %u are not wound alike: both go from vertex %d to %d", other / 3,
+                    h / 3, a, b);
         } else {
             m->twin[h] = (int32_t)other;
             m->twin[other] = (int32_t)h;
@@ -255,7 +262,8 @@ static sr_status check_fans(const struct net *m, struct sr_error *error)
     for (uint32_t v = 0; v < m->vertices && error->status == SR_OK; ++v) {
         struct ring r = walk(m, v, NULL, NULL);
         if (r.count - r.is_boundary != leaving[v])
-            sr_fail(error, SR_ERROR_INPUT, "loopsubdiv: vertex %u joins parts of the surface that have no edge in common", v);
+            sr_fail(error, SR_ERROR_INPUT,
+                    "loopsubdiv: vertex %u joins parts of the surface that have no edge in common", v);
     }
     sr_free(leaving);
     return error->status;
@@ -271,14 +279,16 @@ static sr_status check(const struct sr_shape_loopsubdiv *l, struct sr_error *err
         return sr_fail(error, SR_ERROR_INPUT, "loopsubdiv: %u \"indices\", expected a multiple of 3", l->indices.count);
     for (uint32_t i = 0; i < l->indices.count; ++i)
         if (indices[i] < 0 || (uint32_t)indices[i] >= l->P.count)
-            return sr_fail(error, SR_ERROR_INPUT, "loopsubdiv: index %d at place %u is out of range, expected 0 to %u as there are %u \"P\"",
+            return sr_fail(error, SR_ERROR_INPUT,
+                           "loopsubdiv: index %d at place %u is out of range, expected 0 to %u as there are %u \"P\"",
                            indices[i], i, l->P.count - 1, l->P.count);
     for (uint32_t i = 0; i < l->P.count; ++i)
         if (!sr_is_finite(P[i]))
             return sr_fail(error, SR_ERROR_INPUT, "loopsubdiv: \"P\" number %u is not finite", i);
     double triangles = l->indices.count / 3 * pow(4, l->levels);
     if (triangles > MAX_TRIANGLES || l->P.count > MAX_TRIANGLES)
-        return sr_fail(error, SR_ERROR_INPUT, "loopsubdiv: %d \"levels\" make %.3g triangles of %u, expected at most %d", l->levels, triangles,
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "loopsubdiv: %d \"levels\" make %.3g triangles of %u, expected at most %d", l->levels, triangles,
                        l->indices.count / 3, MAX_TRIANGLES);
     return SR_OK;
 }
@@ -360,9 +370,11 @@ static sr_status split(struct net *m, struct sr_error *error)
     return SR_OK;
 }
 
-static sr_status finish(const struct net *m, bool unbiased, struct sr_arena *arena, struct sr_shape_mesh *out, struct sr_error *error)
+static sr_status finish(const struct net *m, bool unbiased, struct sr_arena *arena, struct sr_shape_mesh *out,
+                        struct sr_error *error)
 {
-    sr_vec3 *P = sr_arena_alloc(arena, (size_t)m->vertices * sizeof *P + 4), *N = sr_arena_alloc(arena, (size_t)m->vertices * sizeof *N);
+    sr_vec3 *P = sr_arena_alloc(arena, (size_t)m->vertices * sizeof *P + 4),
+            *N = sr_arena_alloc(arena, (size_t)m->vertices * sizeof *N);
     int32_t *indices = sr_arena_copy(arena, m->corner, 3 * (size_t)m->triangles * sizeof *indices);
     if (!P || !N || !indices)
         return no_memory(error);
@@ -376,7 +388,8 @@ static sr_status finish(const struct net *m, bool unbiased, struct sr_arena *are
     return SR_OK;
 }
 
-static sr_status prepare(void *self, const struct sr_shape_placement *placement, struct sr_arena *arena, struct sr_error *error)
+static sr_status prepare(void *self, const struct sr_shape_placement *placement, struct sr_arena *arena,
+                         struct sr_error *error)
 {
     struct sr_shape_loopsubdiv *l = self;
     struct net m = {0};

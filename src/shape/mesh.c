@@ -3,8 +3,8 @@
  *
  *     P' = M P [m]    N' = M^-T N / |M^-T N| [1]    S' = M S [1]
  *
- * rounded once from double. Reversed orientation turns the shading normals too, since where there are any, they say which
- * side is outside (M. Pharr, W. Jakob, G. Humphreys, Physically Based Rendering, 4th ed. 2023, section 6.5). */
+ * rounded once from double. Reversed orientation turns the shading normals too, since where there are any, they say
+ * which side is outside (M. Pharr, W. Jakob, G. Humphreys, Physically Based Rendering, 4th ed. 2023, section 6.5). */
 #include "shape/mesh.h"
 
 #include <string.h>
@@ -27,7 +27,8 @@ static bool is_finite_vertex(const struct sr_mesh_arrays *m, int32_t vertex)
     return !m->uv->count || all_finite((const float *)m->uv->data + 2 * vertex, 2);
 }
 
-/* Primitives with a vertex that is not all numbers are left out, and counted; such a vertex then is 0. The slices are the arena's own. */
+/* Primitives with a vertex that is not all numbers are left out, and counted; such a vertex then is 0. The slices are
+ * the arena's own. */
 static uint32_t leave_out(const struct sr_mesh_arrays *m)
 {
     int32_t *indices = (int32_t *)(uintptr_t)m->indices->data, *faces = (int32_t *)(uintptr_t)m->face_indices->data;

@@ -14,16 +14,16 @@ struct sr_mesh_arrays {
     uint32_t *left_out; // primitives with numbers that are not finite
 };
 
-/* Checks all, and replaces all by copies: P, N and S in the space of placement. Primitives with numbers that are not finite are
- * left out. */
+/* Checks all, and replaces all by copies: P, N and S in the space of placement. Primitives with numbers that are not
+ * finite are left out. */
 sr_status sr_mesh_place(const struct sr_mesh_arrays *m, const struct sr_shape_placement *placement, bool *flip_normals,
                         struct sr_arena *arena, struct sr_error *error);
 
 /* Fills the planes of a small mesh of triangles. */
 void sr_mesh_keep_planes(struct sr_shape_mesh *m, struct sr_arena *arena);
 
-/* pdf [1/sr] at `from` = pdf_area [1/m^2] r^2 / |cos theta|; 0 where the surface is seen edge on or from itself. Without
- * n's sign: both sides count, the light decides which of them shines. */
+/* pdf [1/sr] at `from` = pdf_area [1/m^2] r^2 / |cos theta|; 0 where the surface is seen edge on or from itself.
+ * Without n's sign: both sides count, the light decides which of them shines. */
 static inline float sr_density_seen_from(sr_vec3 from, sr_vec3 p, sr_vec3 n, float pdf_area)
 {
     sr_vec3 d = sr_sub(p, from);
@@ -43,7 +43,8 @@ static inline bool sr_has_normal(const struct sr_point *reference)
     return reference->ns.x != 0 || reference->ns.y != 0 || reference->ns.z != 0;
 }
 
-/* A unit normal of a vector product of edges that may be too small or too large for squares in float; (0,0,1) if zero. */
+/* A unit normal of a vector product of edges that may be too small or too large for squares in float; (0,0,1) if zero.
+ */
 static inline sr_vec3 sr_unit_normal(sr_vec3 c)
 {
     float l2 = sr_dot(c, c);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Triangles by pairs: each with the next one, where they share an edge that they walk in opposite directions.
  *
- * Modellers cut quads into triangles that follow each other, so most triangles have such a neighbour, and looking no further
- * costs one pass and no memory. What the first corner of a triangle was matters only where there is no uv: then it is kept. */
+ * Modellers cut quads into triangles that follow each other, so most triangles have such a neighbour, and looking no
+ * further costs one pass and no memory. What the first corner of a triangle was matters only where there is no uv: then
+ * it is kept. */
 #include "shape/mesh.h"
 
 #include <string.h>

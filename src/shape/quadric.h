@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What sphere, disk and cylinder share: object space in double, and the way from there to the world. Private to the room. */
+/* What sphere, disk and cylinder share: object space in double, and the way from there to the world. Private to the
+ * room. */
 #ifndef SR_SHAPE_QUADRIC_H
 #define SR_SHAPE_QUADRIC_H
 
@@ -44,7 +45,8 @@ sr_status sr_quadric_place(struct sr_shape_quadric *q, const char *name, const s
                            bool *flip_normals, struct sr_error *error);
 /* Checks and clamps phi_max to 0 … 360 deg; returns radians. */
 sr_status sr_quadric_angle(const char *name, float phi_max_deg, float *phi_max_rad, struct sr_error *error);
-/* The box of the ellipse or ellipsoid around centre with the object half axes, widened by rounding; is_box: of the cylinder instead. */
+/* The box of the ellipse or ellipsoid around centre with the object half axes, widened by rounding; is_box: of the
+ * cylinder instead. */
 struct sr_box sr_quadric_box(const struct sr_shape_quadric *q, sr_dvec3 centre, sr_dvec3 half, bool is_box);
 struct sr_box sr_quadric_box_outward(sr_dvec3 lo, sr_dvec3 hi);
 

@@ -9,8 +9,8 @@
  *     pdf = 1 / (2 pi (1 - cos theta_max)) [1/sr],   1 - cos theta_max = s^2 / (1 + sqrt(1 - s^2)),   s = R / distance
  *
  * which keeps its accuracy however small s is. From inside, or if it is partial or scaled to an ellipsoid, by area in
- * object space, uniformly over the part that exists. The hit is the direction p / r in octahedral coordinates (Z. Cigolle
- * et al. 2014): floats near the +z pole are dense there, so a planet may be touched at its pole. */
+ * object space, uniformly over the part that exists. The hit is the direction p / r in octahedral coordinates (Z.
+ * Cigolle et al. 2014): floats near the +z pole are dense there, so a planet may be touched at its pole. */
 #include "shape/quadric.h"
 
 static const double pi = 3.14159265358979323846;
@@ -217,8 +217,8 @@ static sr_vec2 uv(const void *self, uint32_t primitive, sr_vec2 hit)
     return coordinates(self, direction(hit));
 }
 
-/* Whether the sphere is drawn by its cone; then the way to its centre [m] and (R / distance)^2. Points on the sphere, to
- * within rounding, count as inside. */
+/* Whether the sphere is drawn by its cone; then the way to its centre [m] and (R / distance)^2. Points on the sphere,
+ * to within rounding, count as inside. */
 static bool by_cone(const struct sr_shape_sphere *s, const struct sr_point *reference, sr_dvec3 *to_centre,
                     double *sin2_max)
 {
@@ -248,7 +248,8 @@ static bool sample(const void *self, uint32_t primitive, const struct sr_point *
                                  sample);
     }
 
-    // theta: at the reference, from the axis; beta: at the sphere, between ray and radius; alpha = beta - theta: at the centre
+    // theta: at the reference, from the axis; beta: at the sphere, between ray and radius; alpha = beta - theta: at the
+    // centre
     double cos_max = sqrt(1 - s2), one_minus_cos_max = s2 / (1 + cos_max), x = (double)u.x * one_minus_cos_max;
     double cos_theta = 1 - x, sin_theta = sqrt(x * (2 - x));
     double sin_beta = sqrt(fmin(1, (double)u.x * (2 - x) / (1 + cos_max))),

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* Parallelograms to triangles and back, where nothing of the surface changes by it.
  *
- * With p11 = p10 + p01 - p00 the bilinear p(u, v) is affine, and so it is over each half. The same must hold of uv and N. */
+ * With p11 = p10 + p01 - p00 the bilinear p(u, v) is affine, and so it is over each half. The same must hold of uv and
+ * N. */
 #include "shape/shape.h"
 
 static bool is_affine3(const sr_vec3 *a, const int32_t *c, float tolerance)
 {
     sr_vec3 e = sr_sub(a[c[1]], a[c[0]]), f = sr_sub(a[c[2]], a[c[0]]), g = sr_sub(a[c[3]], a[c[1]]);
     float extent = sr_max(sr_max_component((sr_vec3){fabsf(e.x), fabsf(e.y), fabsf(e.z)}),
-                         sr_max_component((sr_vec3){fabsf(f.x), fabsf(f.y), fabsf(f.z)}));
+                          sr_max_component((sr_vec3){fabsf(f.x), fabsf(f.y), fabsf(f.z)}));
     sr_vec3 rest = sr_sub(g, f);
     return sr_max(fabsf(rest.x), sr_max(fabsf(rest.y), fabsf(rest.z))) <= tolerance * extent;
 }
@@ -17,7 +18,7 @@ static bool is_affine2(const sr_vec2 *a, const int32_t *c, float tolerance)
 {
     float x = a[c[3]].x - a[c[1]].x - a[c[2]].x + a[c[0]].x, y = a[c[3]].y - a[c[1]].y - a[c[2]].y + a[c[0]].y;
     float extent = sr_max(sr_max(fabsf(a[c[1]].x - a[c[0]].x), fabsf(a[c[1]].y - a[c[0]].y)),
-                         sr_max(fabsf(a[c[2]].x - a[c[0]].x), fabsf(a[c[2]].y - a[c[0]].y)));
+                          sr_max(fabsf(a[c[2]].x - a[c[0]].x), fabsf(a[c[2]].y - a[c[0]].y)));
     return sr_max(fabsf(x), fabsf(y)) <= tolerance * extent;
 }
 
@@ -111,8 +112,8 @@ static bool join_pair(const sr_vec3 v[6], sr_vec3 corner[4])
     return false;
 }
 
-bool sr_shape_join_triangles(const struct sr_shape_mesh *triangles, struct sr_arena *arena, struct sr_shape_patches *patches,
-                             struct sr_error *error)
+bool sr_shape_join_triangles(const struct sr_shape_mesh *triangles, struct sr_arena *arena,
+                             struct sr_shape_patches *patches, struct sr_error *error)
 {
     const struct sr_shape_mesh *m = triangles;
     uint32_t count = m->indices.count / 6;

@@ -1,23 +1,22 @@
 /* SPDX-License-Identifier: MIT */
 /* Triangles: p = b0 p0 + b1 p1 + b2 p2 [m], uv and normals likewise.
  *
- *     n  = (p1 - p0) x (p2 - p0) / |...|             the winding is counterclockwise seen from outside, turned if flipped;
- *                                                    where there are N, on the side of the interpolated N instead
- *     |error of p| <= gamma(7) SUM |b_i p_i|         [m]
- *     + 32 u w_x w_y w_z / |(p1 - p0) x (p2 - p0)|   [m] along n: how far from its plane a ray caster may find itself that computes
- *                                                    in floats; w: the box's size, u = 2^-24
- *                                                    (docs/decisions/0024-leaving-triangles.md)
- *     du12 dpdu + dv12 dpdv = p1 - p2, and so on     solved for dpdu, dpdv [m]
+ *     n  = (p1 - p0) x (p2 - p0) / |...|             the winding is counterclockwise seen from outside, turned if
+ * flipped; where there are N, on the side of the interpolated N instead |error of p| <= gamma(7) SUM |b_i p_i| [m]
+ *     + 32 u w_x w_y w_z / |(p1 - p0) x (p2 - p0)|   [m] along n: how far from its plane a ray caster may find itself
+ * that computes in floats; w: the box's size, u = 2^-24 (docs/decisions/0024-leaving-triangles.md) du12 dpdu + dv12
+ * dpdv = p1 - p2, and so on     solved for dpdu, dpdv [m]
  *
- * Sampled toward a point: uniformly in the solid angle Omega (J. Arvo 1995), times the bilinear weight of the receiver's
- * cosine at the corners; by area, pdf = r^2 / (A |cos theta|) [1/sr], where the triangle looks small (that is cheaper and as
- * good) or fills nearly a hemisphere. M. Pharr, W. Jakob, G. Humphreys, Physically Based Rendering, 4th ed. 2023, 6.5.
- * A triangle without area is never sampled. */
+ * Sampled toward a point: uniformly in the solid angle Omega (J. Arvo 1995), times the bilinear weight of the
+ * receiver's cosine at the corners; by area, pdf = r^2 / (A |cos theta|) [1/sr], where the triangle looks small (that
+ * is cheaper and as good) or fills nearly a hemisphere. M. Pharr, W. Jakob, G. Humphreys, Physically Based Rendering,
+ * 4th ed. 2023, 6.5. A triangle without area is never sampled. */
 #include "shape/mesh.h"
 
 static const float min_solid_angle = 3e-4f,
                    max_solid_angle = 6.22f; // [sr] within, the spherical triangle is well-conditioned
-static const float small_extent2 = 1.5f;  // (longest edge / distance)^2 below which area sampling is taken at once: 15 % faster for 1 % more variance
+static const float small_extent2 =
+    1.5f; // (longest edge / distance)^2 below which area sampling is taken at once: 15 % faster for 1 % more variance
 
 #define T struct sr_shape_mesh
 static const struct sr_param params[] = {
@@ -82,7 +81,8 @@ static inline quad box_size(quad v0, quad v1, quad v2)
     return hi - lo;
 }
 
-/* Needles, whose normal is known no better than that, do not leave more than 2^-10 of their size between them and a ray. */
+/* Needles, whose normal is known no better than that, do not leave more than 2^-10 of their size between them and a
+ * ray. */
 static inline float plane_error(float of_normal, quad w)
 {
     return sr_min(32 * SR_MACHINE_EPSILON * of_normal, 0x1p-10f * (w[0] + w[1] + w[2]));
@@ -121,7 +121,8 @@ void sr_mesh_keep_planes(struct sr_shape_mesh *m, struct sr_arena *arena)
     m->planes = planes;
 }
 
-static inline struct sr_shape_plane find_plane(const struct sr_shape_mesh *m, uint32_t primitive, quad v0, quad v1, quad v2)
+static inline struct sr_shape_plane find_plane(const struct sr_shape_mesh *m, uint32_t primitive, quad v0, quad v1,
+                                               quad v2)
 {
     return m->planes ? m->planes[primitive] : plane_of(v0, v1, v2);
 }
@@ -130,7 +131,8 @@ static sr_status prepare(void *self, const struct sr_shape_placement *placement,
                          struct sr_error *error)
 {
     struct sr_shape_mesh *m = self;
-    const struct sr_mesh_arrays a = {"trianglemesh", 3, &m->indices, &m->P, &m->N, &m->S, &m->uv, &m->face_indices, &m->left_out};
+    const struct sr_mesh_arrays a = {"trianglemesh", 3,      &m->indices,      &m->P,       &m->N,
+                                     &m->S,          &m->uv, &m->face_indices, &m->left_out};
     sr_status status = sr_mesh_place(&a, placement, &m->flip_normals, arena, error);
     if (status == SR_OK)
         sr_mesh_keep_planes(m, arena);
@@ -173,7 +175,8 @@ static float area(const void *self, uint32_t primitive)
 }
 
 /* Corners and their weights in the order of the file. */
-static void turn_back(const struct sr_shape_mesh *m, uint32_t primitive, const int32_t **corner, float b[3], int32_t turned[3])
+static void turn_back(const struct sr_shape_mesh *m, uint32_t primitive, const int32_t **corner, float b[3],
+                      int32_t turned[3])
 {
     int turn = m->turns[primitive & m->turn_mask];
     float w[3] = {b[0], b[1], b[2]};
@@ -194,7 +197,8 @@ static const float gamma7 = 7.1f * SR_MACHINE_EPSILON; // gamma(7), rounded up
 /* Of the point, and of where the ray caster sees the plane. */
 static inline sr_vec3 error_bound(quad a, quad b, quad c, struct sr_shape_plane k)
 {
-    return three(gamma7 * (magnitude(a) + magnitude(b) + magnitude(c)) + k.error * magnitude((quad){k.n.x, k.n.y, k.n.z, 0}));
+    return three(gamma7 * (magnitude(a) + magnitude(b) + magnitude(c)) +
+                 k.error * magnitude((quad){k.n.x, k.n.y, k.n.z, 0}));
 }
 
 /* From differences along two edges to derivatives by the texture coordinates. */
@@ -465,7 +469,8 @@ static bool flat(const void *self, uint32_t primitive, struct sr_shape_flat *fla
     sr_vec3 v[3];
     vertices(m, primitive, v);
     float cos_theta;
-    *flat = (struct sr_shape_flat){.corner = v[0], .e = sr_sub(v[1], v[0]), .f = sr_sub(v[2], v[0]), .is_triangle = true};
+    *flat =
+        (struct sr_shape_flat){.corner = v[0], .e = sr_sub(v[1], v[0]), .f = sr_sub(v[2], v[0]), .is_triangle = true};
     normals(self, primitive, &flat->n, &cos_theta);
     return cos_theta == 1 && area(self, primitive) > 0;
 }

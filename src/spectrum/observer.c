@@ -66,7 +66,8 @@ struct sr_xyz sr_spectrum_to_xyz(sr_spectrum L, const struct sr_wavelengths *w)
     memcpy(uppers, &upper, sizeof uppers);
     quad sums[2] = {{0}}; // two, so that additions wait less for each other
     for (int k = 0; k < SR_LAMBDA_COUNT; ++k) {
-        const quad *row = (const quad *)(const void *)((const char *)sr_data_observer_f + offsets[k]); // the last row is followed by a zero one
+        const quad *row = (const quad *)(const void *)((const char *)sr_data_observer_f +
+                                                       offsets[k]); // the last row is followed by a zero one
         sums[k & 1] += lowers[k] * row[0] + uppers[k] * row[1];
     }
     quad sum = (sums[0] + sums[1]) * (1.0f / SR_LAMBDA_COUNT);

@@ -58,7 +58,12 @@ struct sr_sigmoid sr_rgb_to_sigmoid(enum sr_colour_space_id space, struct sr_rgb
     float z = v[0] > v[1] ? v[0] : v[1];
     largest = z > v[2] ? largest : 2;
     z = z > v[2] ? z : v[2];
-    float next = largest == 0 ? v[1] : largest == 1 ? v[2] : v[0], last = largest == 0 ? v[2] : largest == 1 ? v[0] : v[1];
+    float next = largest == 0   ? v[1]
+                 : largest == 1 ? v[2]
+                                : v[0],
+          last = largest == 0   ? v[2]
+                 : largest == 1 ? v[0]
+                                : v[1];
     const struct sr_rgb_table *table = tables[space];
     const int n = SR_RGB_RESOLUTION;
     float x = next / z * (float)(n - 1), y = last / z * (float)(n - 1);

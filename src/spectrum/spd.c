@@ -23,7 +23,8 @@ static inline void neighbours(const float *values, sr_spectrum_int i, sr_spectru
     double pair[8];
     for (int k = 0; k < 8; ++k)
         __builtin_memcpy(&pair[k], &values[i[k]], sizeof pair[k]);
-    sr_spectrum a = (sr_spectrum)(pairs){pair[0], pair[1], pair[4], pair[5]}, b = (sr_spectrum)(pairs){pair[2], pair[3], pair[6], pair[7]};
+    sr_spectrum a = (sr_spectrum)(pairs){pair[0], pair[1], pair[4], pair[5]},
+                b = (sr_spectrum)(pairs){pair[2], pair[3], pair[6], pair[7]};
     *v0 = __builtin_shufflevector(a, b, 0, 2, 8, 10, 4, 6, 12, 14);
     *v1 = __builtin_shufflevector(a, b, 1, 3, 9, 11, 5, 7, 13, 15);
 #else

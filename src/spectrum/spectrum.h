@@ -96,8 +96,8 @@ struct sr_lambda_range {
 };
 
 struct sr_wavelengths {
-    sr_spectrum lambda; // [nm]
-    sr_spectrum pdf;    // [1/nm]; secondary wavelengths that dispersion has ended have pdf 0
+    sr_spectrum lambda;           // [nm]
+    sr_spectrum pdf;              // [1/nm]; secondary wavelengths that dispersion has ended have pdf 0
     const struct sr_table *known; // a table that has been looked up already, or NULL
     sr_spectrum known_values;     // its values at lambda
 };
@@ -135,12 +135,12 @@ struct sr_table {
 };
 
 enum sr_spd_kind {
-    SR_SPD_NONE = 0,     // not given
-    SR_SPD_CONSTANT,     // scale
-    SR_SPD_TABLE,        // scale * table(lambda)
-    SR_SPD_SIGMOID,      // scale * sigmoid(lambda)
-    SR_SPD_ILLUMINANT,   // scale * sigmoid(lambda) * table(lambda)
-    SR_SPD_BLACKBODY,    // scale * Planck(lambda, temperature) / Planck's maximum
+    SR_SPD_NONE = 0,   // not given
+    SR_SPD_CONSTANT,   // scale
+    SR_SPD_TABLE,      // scale * table(lambda)
+    SR_SPD_SIGMOID,    // scale * sigmoid(lambda)
+    SR_SPD_ILLUMINANT, // scale * sigmoid(lambda) * table(lambda)
+    SR_SPD_BLACKBODY,  // scale * Planck(lambda, temperature) / Planck's maximum
 };
 
 /* A plain value: 32 bytes, copied freely. The table belongs to an arena or to the library and outlives it. */
@@ -173,8 +173,9 @@ struct sr_spd sr_spd_from_samples(struct sr_arena *arena, const float *lambda, c
                                   struct sr_error *error);
 /* Planck's law normalised to a maximum of 1. T in kelvin. */
 struct sr_spd sr_spd_blackbody(float T);
-/* One of pbrt's names ("metal-Cu-eta", "stdillum-D65", "glass-BK7", …), their aliases, or our own. Kind NONE if unknown.
- * Illuminants are scaled as their sources print them, about 100; pbrt's "stdillum-D50" is not CIE's, "illum-cieD50" is. */
+/* One of pbrt's names ("metal-Cu-eta", "stdillum-D65", "glass-BK7", …), their aliases, or our own. Kind NONE if
+ * unknown. Illuminants are scaled as their sources print them, about 100; pbrt's "stdillum-D50" is not CIE's,
+ * "illum-cieD50" is. */
 struct sr_spd sr_spd_named(const char *name);
 const char *sr_spd_name(int i); // the i-th known name, or NULL past the end
 
@@ -208,11 +209,11 @@ struct sr_rgb {
 };
 
 struct sr_colour_space {
-    const char *name; // pbrt's: "srgb", "dci-p3", "rec2020", "aces2065-1"
-    double xy[4][2];  // chromaticities of red, green, blue, white
+    const char *name;                              // pbrt's: "srgb", "dci-p3", "rec2020", "aces2065-1"
+    double xy[4][2];                               // chromaticities of red, green, blue, white
     double rgb_from_xyz[3][3], xyz_from_rgb[3][3]; // white has Y = 1
-    const struct sr_table *illuminant; // the white's standard illuminant, scaled as its source gives it
-    double illuminant_luminous_integral; // [nm * its unit] integral of illuminant * ybar, 1 nm steps
+    const struct sr_table *illuminant;             // the white's standard illuminant, scaled as its source gives it
+    double illuminant_luminous_integral;           // [nm * its unit] integral of illuminant * ybar, 1 nm steps
 };
 const struct sr_colour_space *sr_colour_space(enum sr_colour_space_id id);
 bool sr_colour_space_find(const char *name, enum sr_colour_space_id *id);

@@ -23,7 +23,8 @@ struct store_section {
     uint32_t number, unused[2];
     uint32_t crc; // of all before
 };
-_Static_assert(sizeof(struct store_header) == STORE_ALIGN && sizeof(struct store_section) == STORE_ALIGN, "written as they stand");
+_Static_assert(sizeof(struct store_header) == STORE_ALIGN && sizeof(struct store_section) == STORE_ALIGN,
+               "written as they stand");
 
 /* CRC-32 of a header of either kind before its last member. */
 uint32_t sr_store_crc_header(const void *header);

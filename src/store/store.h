@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Files of named sections that are whole or are found out: checkpoints, and parts of a picture.
  *
- * A header of 64 bytes, then each section: 64 bytes about it, its bytes, and a checksum (CRC-32) for each 64 KiB of them; all of
- * it starts at multiples of 64 bytes, and gaps are zero. Every bit is under a checksum or must have one value, so that a flipped
- * bit, a missing end, a block in another's place is an error that says where. Numbers are little-endian.
+ * A header of 64 bytes, then each section: 64 bytes about it, its bytes, and a checksum (CRC-32) for each 64 KiB of
+ * them; all of it starts at multiples of 64 bytes, and gaps are zero. Every bit is under a checksum or must have one
+ * value, so that a flipped bit, a missing end, a block in another's place is an error that says where. Numbers are
+ * little-endian.
  *
  * A file is written beside its name, and bears it only once it is on the disk: see sr_store_finish. */
 #ifndef SR_STORE_STORE_H
@@ -12,8 +13,8 @@
 #include "base/base.h"
 
 enum {
-    SR_STORE_KIND = 16, // [B] with the NUL
-    SR_STORE_NAME = 40, // [B] with the NUL
+    SR_STORE_KIND = 16,       // [B] with the NUL
+    SR_STORE_NAME = 40,       // [B] with the NUL
     SR_STORE_BLOCK = 1 << 16, // [B] that share a checksum
     SR_STORE_SECTIONS = 4096, // at most
 };
@@ -23,9 +24,10 @@ enum {
 struct sr_store_out;
 /* Opens FILE.new. Two writers of one file: the second fails. */
 sr_status sr_store_create(const char *path, const char *kind, struct sr_store_out **out, struct sr_error *error);
-sr_status sr_store_put(struct sr_store_out *out, const char *name, const void *data, size_t size, struct sr_error *error);
-/* FILE.new is brought to the disk and becomes FILE; what was FILE becomes FILE~ if it is to be kept. At each instant FILE or FILE~
- * is whole if one of them was, also where this fails. out is gone in any case. */
+sr_status sr_store_put(struct sr_store_out *out, const char *name, const void *data, size_t size,
+                       struct sr_error *error);
+/* FILE.new is brought to the disk and becomes FILE; what was FILE becomes FILE~ if it is to be kept. At each instant
+ * FILE or FILE~ is whole if one of them was, also where this fails. out is gone in any case. */
 sr_status sr_store_finish(struct sr_store_out *out, bool keeps_previous, struct sr_error *error);
 /* Not wanted after all: FILE stays as it was. NULL is allowed. */
 void sr_store_abandon(struct sr_store_out *out);

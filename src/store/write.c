@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Writes a store: beside its name, to the disk, then under its name.
  *
- * rename is atomic and a folder's fsync makes it last (POSIX.1-2017; T. S. Pillai et al. 2014 show what file systems do without). */
+ * rename is atomic and a folder's fsync makes it last (POSIX.1-2017; T. S. Pillai et al. 2014 show what file systems do
+ * without). */
 #define _DEFAULT_SOURCE
 #define _POSIX_C_SOURCE 200809L
 #include "store/layout.h"
@@ -70,7 +71,8 @@ static bool lock(struct sr_store_out *out)
             return false;
         errno = 0; // a file system without locks
     }
-    if (fstat(out->fd, &ours) != 0 || stat(out->beside, &named) != 0 || ours.st_ino != named.st_ino || ours.st_dev != named.st_dev) {
+    if (fstat(out->fd, &ours) != 0 || stat(out->beside, &named) != 0 || ours.st_ino != named.st_ino ||
+        ours.st_dev != named.st_dev) {
         errno = EWOULDBLOCK;
         return false;
     }
@@ -105,8 +107,9 @@ sr_status sr_store_create(const char *path, const char *kind, struct sr_store_ou
     if (out->fd < 0) {
         status = fail_errno(out, "written", error);
     } else if (!lock(out)) {
-        status = errno == EWOULDBLOCK ? sr_fail(error, SR_ERROR_RESOURCE, "%s: cannot be written: another process is writing it", path)
-                                      : fail_errno(out, "written", error);
+        status = errno == EWOULDBLOCK
+                     ? sr_fail(error, SR_ERROR_RESOURCE, "%s: cannot be written: another process is writing it", path)
+                     : fail_errno(out, "written", error);
         close(out->fd); // what is beside is not ours to remove
         out->fd = -1;
     }
@@ -142,7 +145,8 @@ static void sum_block(void *context, uint64_t block)
     s->crc[block] = sr_store_crc_block(s->section, block, s->data + at, n);
 }
 
-sr_status sr_store_put(struct sr_store_out *out, const char *name, const void *data, size_t size, struct sr_error *error)
+sr_status sr_store_put(struct sr_store_out *out, const char *name, const void *data, size_t size,
+                       struct sr_error *error)
 {
     struct store_section section = {.size = size, .number = out->header.sections};
     if (strlen(name) >= sizeof section.name || out->header.sections >= SR_STORE_SECTIONS)
@@ -153,8 +157,10 @@ sr_status sr_store_put(struct sr_store_out *out, const char *name, const void *d
     uint32_t *crc = sr_alloc((blocks + 1) * sizeof *crc);
     if (!crc)
         return sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory to write it", out->path);
-    sr_parallel_for(blocks < 64 ? 1 : sr_thread_count(), blocks, sum_block, &(struct summing){section.number, crc, data, size});
-    bool ok = put_padded(out, &section, sizeof section) && put_padded(out, data, size) && put_padded(out, crc, blocks * sizeof *crc);
+    sr_parallel_for(blocks < 64 ? 1 : sr_thread_count(), blocks, sum_block,
+                    &(struct summing){section.number, crc, data, size});
+    bool ok = put_padded(out, &section, sizeof section) && put_padded(out, data, size) &&
+              put_padded(out, crc, blocks * sizeof *crc);
     sr_status status = ok ? SR_OK : fail_errno(out, "written", error);
     sr_free(crc);
     out->header.sections += 1;
@@ -193,7 +199,8 @@ sr_status sr_store_finish(struct sr_store_out *out, bool keeps_previous, struct 
 {
     out->header.crc = sr_store_crc_header(&out->header);
     sr_status status = SR_OK;
-    if (lseek(out->fd, 0, SEEK_SET) != 0 || !write_all(out->fd, &out->header, sizeof out->header) || fsync(out->fd) != 0)
+    if (lseek(out->fd, 0, SEEK_SET) != 0 || !write_all(out->fd, &out->header, sizeof out->header) ||
+        fsync(out->fd) != 0)
         status = fail_errno(out, "written", error);
     int fd = out->fd;
     if (status == SR_OK && keeps_previous && !keep_previous(out))

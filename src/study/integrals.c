@@ -3,8 +3,9 @@
  *
  *     I = INTEGRAL f dx,        I_n = 1/n SUM f(x_i) / p(x_i),    x_i drawn with density p
  *
- * Smooth, peaked, with a jump and with a pole: scrambled nets fall as n^-3/2, n^-3/2 late, n^-3/4, and between n^-1/2 and n^-3/2
- * (A. Owen 1997; Z. He & X. Wang 2015 for jumps); independent numbers as n^-1/2 always, if the variance is finite. */
+ * Smooth, peaked, with a jump and with a pole: scrambled nets fall as n^-3/2, n^-3/2 late, n^-3/4, and between n^-1/2
+ * and n^-3/2 (A. Owen 1997; Z. He & X. Wang 2015 for jumps); independent numbers as n^-1/2 always, if the variance is
+ * finite. */
 #include "study/study.h"
 
 #include <string.h>
@@ -66,13 +67,27 @@ static double pole_third(double u, double v) // p = 4/9 (x y)^(-1/3)
 }
 
 const struct sr_study_integral sr_study_integrals[] = {
-    {"smooth-1d", "e^x over [0, 1]", 1, 1.71828182845904523536, {{"uniform", "1", smooth1_uniform}, {"importance", "(1 + x) / 1.5", smooth1_linear}}},
-    {"peaked-1d", "exp(-((x - 0.5) / 0.03)^2 / 2) over [0, 1]", 1, 0.0751988482389300, // sigma sqrt(2 pi) erf(0.5 / (sigma sqrt 2))
+    {"smooth-1d",
+     "e^x over [0, 1]",
+     1,
+     1.71828182845904523536,
+     {{"uniform", "1", smooth1_uniform}, {"importance", "(1 + x) / 1.5", smooth1_linear}}},
+    {"peaked-1d",
+     "exp(-((x - 0.5) / 0.03)^2 / 2) over [0, 1]",
+     1,
+     0.0751988482389300, // sigma sqrt(2 pi) erf(0.5 / (sigma sqrt 2))
      {{"uniform", "1", peak_uniform}, {"importance", "Cauchy, half width 0.045", peak_cauchy}}},
-    {"smooth-2d", "cos(pi x / 2) e^y over [0, 1]^2", 2, 1.09389217923098, // 2 (e - 1) / pi
+    {"smooth-2d",
+     "cos(pi x / 2) e^y over [0, 1]^2",
+     2,
+     1.09389217923098, // 2 (e - 1) / pi
      {{"uniform", "1", smooth2_uniform}, {"importance", "2 (1 - x)", smooth2_linear}}},
     {"disk-2d", "1 where x^2 + y^2 < 1, over [0, 1]^2", 2, 0.78539816339744830962, {{"uniform", "1", disk_uniform}}},
-    {"pole-2d", "(x y)^(-1/4) over [0, 1]^2", 2, 16.0 / 9, {{"uniform", "1", pole_uniform}, {"importance", "4/9 (x y)^(-1/3)", pole_third}}},
+    {"pole-2d",
+     "(x y)^(-1/4) over [0, 1]^2",
+     2,
+     16.0 / 9,
+     {{"uniform", "1", pole_uniform}, {"importance", "4/9 (x y)^(-1/3)", pole_third}}},
     {.name = NULL},
 };
 
@@ -84,8 +99,8 @@ const struct sr_study_integral *sr_study_integral_find(const char *name)
     return NULL;
 }
 
-double sr_study_error(const struct sr_study_integral *integral, int strategy, enum sr_sampler_kind sampler, uint32_t seed, uint32_t n, uint32_t seeds,
-                      double *time_s)
+double sr_study_error(const struct sr_study_integral *integral, int strategy, enum sr_sampler_kind sampler,
+                      uint32_t seed, uint32_t n, uint32_t seeds, double *time_s)
 {
     const double half = 0x1p-25; // numbers are the middles of cells of 2^-24, never 0
     double squares = 0;

@@ -22,13 +22,14 @@ struct sr_study_integral {
 extern const struct sr_study_integral sr_study_integrals[]; // ends with name NULL
 const struct sr_study_integral *sr_study_integral_find(const char *name);
 
-/* Root mean square error of means of n samples, over `seeds` independent nets; *time_s: of one mean, on the processor. */
-double sr_study_error(const struct sr_study_integral *integral, int strategy, enum sr_sampler_kind sampler, uint32_t seed, uint32_t n, uint32_t seeds,
-                      double *time_s);
+/* Root mean square error of means of n samples, over `seeds` independent nets; *time_s: of one mean, on the processor.
+ */
+double sr_study_error(const struct sr_study_integral *integral, int strategy, enum sr_sampler_kind sampler,
+                      uint32_t seed, uint32_t n, uint32_t seeds, double *time_s);
 
 /* The straight line through log error over log x, by least squares, with 95 % bounds of its slope and of itself. */
 struct sr_study_slope {
-    double slope, low, high;                                 // [1]
+    double slope, low, high;                                                             // [1]
     double line[SR_STUDY_POINTS], line_low[SR_STUDY_POINTS], line_high[SR_STUDY_POINTS]; // [unit of error] at each x
 };
 /* Points that are not above 0 are left out; false: fewer than three are left. */

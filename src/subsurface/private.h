@@ -10,8 +10,8 @@
 enum { SUBSURFACE_NODES = 64 };
 struct subsurface_kernel {
     double g, eta;
-    double critical;                               // depth below which light leaves at the distance 1 [1]
-    double A, C_phi, C_E;                          // of the boundary [1]
+    double critical;                                 // depth below which light leaves at the distance 1 [1]
+    double A, C_phi, C_E;                            // of the boundary [1]
     double z[SUBSURFACE_NODES], w[SUBSURFACE_NODES]; // depths [mean free path]
 };
 struct subsurface_kernel subsurface_kernel_of(double g, double eta);

@@ -3,11 +3,14 @@
  *
  *     2 pi r S_r(r) = sigma_t SUM_j SUM_k w_j(albedo) w_k(r sigma_t) profile_jk      [1/m]
  *
- * w are Catmull & Rom's weights on uneven nodes: the cubic in an interval has the nodes' values and, at its ends, the slope
+ * w are Catmull & Rom's weights on uneven nodes: the cubic in an interval has the nodes' values and, at its ends, the
+slope
  * between the neighbours. A distance is drawn by the integral of that spline, solved in its interval by Newton's steps
  * between shrinking bounds. The model lets out up to 2 % more than has entered near an albedo of 1, and more where g is
-negative; there the shares from 0.98 on are pressed together so that the last is 1. Nodes as pbrt-v4 has them (Pharr, Jakob & Humphreys 2016, 15.5.4): radii 0, 0.0025, … by
- * 1.2, albedos denser toward 1. Splines can dip below 0 where a profile dies away, by some 1e-7 of all; there nothing comes out. */
+negative; there the shares from 0.98 on are pressed together so that the last is 1. Nodes as pbrt-v4 has them (Pharr,
+Jakob & Humphreys 2016, 15.5.4): radii 0, 0.0025, … by
+ * 1.2, albedos denser toward 1. Splines can dip below 0 where a profile dies away, by some 1e-7 of all; there nothing
+comes out. */
 #include "subsurface/private.h"
 
 enum { ALBEDOS = SR_DIFFUSION_ALBEDOS, RADII = SR_DIFFUSION_RADII };
@@ -70,10 +73,12 @@ static float cubic_at(struct cubic c, float t)
 }
 static float cubic_integral(struct cubic c, float t)
 {
-    return t * (c.f0 + t * (c.d0 / 2 + t * ((3 * (c.f1 - c.f0) - 2 * c.d0 - c.d1) / 3 + t * (2 * (c.f0 - c.f1) + c.d0 + c.d1) / 4)));
+    return t * (c.f0 + t * (c.d0 / 2 + t * ((3 * (c.f1 - c.f0) - 2 * c.d0 - c.d1) / 3 +
+                                            t * (2 * (c.f0 - c.f1) + c.d0 + c.d1) / 4)));
 }
 /* t with value(t) = target, where value grows; slope is its derivative. */
-static float solve(struct cubic c, float target, float (*value)(struct cubic, float), float (*slope)(struct cubic, float))
+static float solve(struct cubic c, float target, float (*value)(struct cubic, float),
+                   float (*slope)(struct cubic, float))
 {
     float lo = 0, hi = 1, t = 0.5f;
     for (int i = 0; i < 40 && hi - lo > 1e-7f; ++i) {
@@ -114,7 +119,8 @@ static void integrate(struct sr_diffusion *d, int j)
 {
     float *sum = d->cumulative[j];
     for (int k = 0; k < RADII - 1; ++k)
-        sum[k + 1] = sum[k] + (d->radius[k + 1] - d->radius[k]) * cubic_integral(cubic_of(d->radius, d->profile[j], RADII, k), 1);
+        sum[k + 1] = sum[k] + (d->radius[k + 1] - d->radius[k]) *
+                                  cubic_integral(cubic_of(d->radius, d->profile[j], RADII, k), 1);
     d->effective[j] = sum[RADII - 1];
 }
 
@@ -140,12 +146,14 @@ const struct sr_diffusion *sr_diffusion_make(double g, double eta, struct sr_are
         double albedo = (double)d->albedo[j];
         float *f = d->profile[j];
         for (int k = 0; k < RADII; ++k)
-            f[k] = (float)(albedo * single[k] + 2 * M_PI * (double)d->radius[k] * subsurface_multiple(&kernel, albedo, (double)d->radius[k]));
+            f[k] = (float)(albedo * single[k] + 2 * M_PI * (double)d->radius[k] *
+                                                    subsurface_multiple(&kernel, albedo, (double)d->radius[k]));
         integrate(d, j);
     }
     float most = d->effective[ALBEDOS - 1], knee = 0.98f;
     for (int j = 0; j < ALBEDOS; ++j) {
-        float e = d->effective[j], factor = most > 1 && e > knee ? (knee + (1 - knee) * (e - knee) / (most - knee)) / e : 1;
+        float e = d->effective[j],
+              factor = most > 1 && e > knee ? (knee + (1 - knee) * (e - knee) / (most - knee)) / e : 1;
         for (int k = 0; k < RADII; ++k)
             d->profile[j][k] *= factor;
         integrate(d, j);
@@ -190,7 +198,8 @@ sr_spectrum sr_bssrdf_profile(const struct sr_bssrdf *b, float r, sr_spectrum *p
     for (int i = 0; i < SR_LAMBDA_COUNT; ++i) {
         float radius = sr_max(r * b->sigma_t[i], 1e-6f); // at 0 the table says 0 / 0
         struct weights a, k;
-        if (!(b->albedo[i] > 0) || !weights_at(d->albedo, ALBEDOS, b->albedo[i], &a) || !weights_at(d->radius, RADII, radius, &k))
+        if (!(b->albedo[i] > 0) || !weights_at(d->albedo, ALBEDOS, b->albedo[i], &a) ||
+            !weights_at(d->radius, RADII, radius, &k))
             continue;
         float sum = 0;
         for (int n = 0; n < 4; ++n)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Values at the corners of a mesh's triangles, such as vertex colours:  value = b0 v0 + b1 v1 + b2 v2  (corners.h).
  *
- * A spectrum texture takes the first three components as linear RGB and interpolates the corners' curves, which is linear in
- * the spectrum, as between texels (pyramid.c). A float texture takes one component. */
+ * A spectrum texture takes the first three components as linear RGB and interpolates the corners' curves, which is
+ * linear in the spectrum, as between texels (pyramid.c). A float texture takes one component. */
 #include "texture/corners.h"
 #include "texture/private.h"
 #include "texture/pyramid.h"
@@ -10,7 +10,7 @@
 struct attribute {
     struct sr_slice values; // components for each corner, three corners a triangle
     int32_t components, component;
-    uint32_t triangle_count; // derived
+    uint32_t triangle_count;              // derived
     const struct sr_packed_texel *curves; // derived, one a corner
     struct sr_spd white;                  // for emission: the spectrum of RGB (1,1,1); else kind NONE
 };
@@ -51,7 +51,8 @@ static sr_status check(struct attribute *m, struct sr_error *error)
 {
     uint32_t n = 3 * (uint32_t)m->components;
     if (m->values.count == 0 || m->values.count % n || m->component >= m->components)
-        return sr_fail(error, SR_ERROR_INPUT, "\"values\" has %u numbers: expected %d for each corner of each triangle", m->values.count, m->components);
+        return sr_fail(error, SR_ERROR_INPUT, "\"values\" has %u numbers: expected %d for each corner of each triangle",
+                       m->values.count, m->components);
     m->triangle_count = m->values.count / n;
     const float *v = m->values.data;
     for (uint32_t i = 0; i < m->values.count; ++i)

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Private to this room: values that are given for each corner of each triangle of a mesh.
  *
- * The mesh tells its triangle by x->face (faceIndices 0, 1, 2, …) and the place in it by (u, v): the corners have (0, 0),
- * (1, 0) and (0, 1), so that (1 - u - v, u, v) are the barycentric coordinates. Two meshes never share such values. */
+ * The mesh tells its triangle by x->face (faceIndices 0, 1, 2, …) and the place in it by (u, v): the corners have (0,
+ * 0), (1, 0) and (0, 1), so that (1 - u - v, u, v) are the barycentric coordinates. Two meshes never share such values.
+ */
 #ifndef SR_TEXTURE_CORNERS_H
 #define SR_TEXTURE_CORNERS_H
 

@@ -4,8 +4,8 @@
  *     cell (i, j) = floor((s, t) + 1/2) has a dot where noise(i + 1/2, j + 1/2) > 0,
  *     of radius 0.35 about (i, j) + 0.15 (noise(i + 1.5, j + 2.8), noise(i + 4.5, j + 9.8))
  *
- * with noise(x, y) = sr_noise(x, y, 1/2), as pbrt-v4 (Pharr, Jakob & Humphreys 2004, 11.5). Not filtered: edges are smooth
- * by the film's samples alone. */
+ * with noise(x, y) = sr_noise(x, y, 1/2), as pbrt-v4 (Pharr, Jakob & Humphreys 2004, 11.5). Not filtered: edges are
+ * smooth by the film's samples alone. */
 #include "texture/private.h"
 
 struct dots {

@@ -5,8 +5,8 @@
  *     wrinkled  sum_i roughness^i |noise(1.99^i q)|
  *     windy     |fbm(q / 10), 3 octaves| * fbm(q), 6 octaves       both with roughness 1/2
  *
- * [1] of q [m], the point in the texture's space. Octaves finer than the footprint are left out, and wrinkled puts their
- * mean in their place. Pharr, Jakob & Humphreys 2023, 10.6; the noise is sr_noise. */
+ * [1] of q [m], the point in the texture's space. Octaves finer than the footprint are left out, and wrinkled puts
+ * their mean in their place. Pharr, Jakob & Humphreys 2023, 10.6; the noise is sr_noise. */
 #include "texture/private.h"
 
 struct fbm {

@@ -6,17 +6,18 @@
  *
  *     level = levels - 1 + log2(width of the footprint),   width = 2 max(|dsdx|, |dsdy|, |dtdx|, |dtdy|)
  *
- * point and bilinear read the level rounded down, trilinear mixes it with the next (below level 1 it reads the image itself),
- * as pbrt does (Pharr, Jakob & Humphreys 2023, 10.4). "ewa" is the elliptical weighted average: texels under the ellipse that
- * a pixel's disk becomes, weighed by a Gaussian of the distance from its middle, on the two levels around the one where the
- * minor axis is one texel long (Heckbert 1989; Greene & Heckbert 1986):
+ * point and bilinear read the level rounded down, trilinear mixes it with the next (below level 1 it reads the image
+ * itself), as pbrt does (Pharr, Jakob & Humphreys 2023, 10.4). "ewa" is the elliptical weighted average: texels under
+ * the ellipse that a pixel's disk becomes, weighed by a Gaussian of the distance from its middle, on the two levels
+ * around the one where the minor axis is one texel long (Heckbert 1989; Greene & Heckbert 1986):
  *
  *     weight = exp(-2 r^2) - exp(-2),   r^2 = A x^2 + B x y + C y^2 < 1,   level = levels - 1 + log2(minor axis)
  *
  * Over an image that repeats, each filter keeps the mean of the texels.
  *
  * Spectrum textures interpolate the texels' curves (see pyramid.c); the wrap "octahedralsphere" is that of equal-area
- * environment maps, where leaving the square over an edge means to enter it over the same edge, mirrored in the middle. */
+ * environment maps, where leaving the square over an edge means to enter it over the same edge, mirrored in the middle.
+ */
 #include "texture/private.h"
 #include "texture/pyramid.h"
 
@@ -318,7 +319,8 @@ static void share(void *self, const void *other)
 {
     struct imagemap *m = self;
     const struct imagemap *o = other;
-    if (m->scale == o->scale && m->invert == o->invert && m->texels.bytes == o->texels.bytes && m->texels.floats == o->texels.floats)
+    if (m->scale == o->scale && m->invert == o->invert && m->texels.bytes == o->texels.bytes &&
+        m->texels.floats == o->texels.floats)
         m->pyramid = o->pyramid;
 }
 

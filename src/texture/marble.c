@@ -3,9 +3,9 @@
  *
  *     t = 1/2 + sin(y + variation * fbm(q)) / 2,     rgb = 1.5 * curve(t),     q = (x, y, z) = scale * point      [1]
  *
- * Curve k of six runs over t in k/6 … (k+1)/6 with the colours k … k+3 as the control points of a Bezier curve, so that at
- * the seams the colour jumps: that is pbrt's marble (Pharr, Jakob & Humphreys 2023, 10.6), and its veins' edges.
- * The colour is an sRGB reflectance in every use; only its octaves of noise are filtered. */
+ * Curve k of six runs over t in k/6 … (k+1)/6 with the colours k … k+3 as the control points of a Bezier curve, so that
+ * at the seams the colour jumps: that is pbrt's marble (Pharr, Jakob & Humphreys 2023, 10.6), and its veins' edges. The
+ * colour is an sRGB reflectance in every use; only its octaves of noise are filtered. */
 #include "texture/private.h"
 
 struct marble {

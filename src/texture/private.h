@@ -12,8 +12,9 @@ extern const struct sr_texture_model sr_texture_constant_model_float, sr_texture
     sr_texture_dots_spectrum, sr_texture_directionmix_float, sr_texture_directionmix_spectrum, sr_texture_fbm,
     sr_texture_wrinkled, sr_texture_windy, sr_texture_marble;
 
-extern const struct sr_texture_model sr_texture_texelmap_float, sr_texture_texelmap_spectrum, sr_texture_attribute_float,
-    sr_texture_attribute_spectrum, sr_texture_product, sr_texture_threshold; // for what other formats say
+extern const struct sr_texture_model sr_texture_texelmap_float, sr_texture_texelmap_spectrum,
+    sr_texture_attribute_float, sr_texture_attribute_spectrum, sr_texture_product,
+    sr_texture_threshold; // for what other formats say
 
 /* Puts the planar axes' defaults where none are given, and refuses a kind that does not exist. */
 sr_status sr_mapping_prepare(struct sr_mapping *m, struct sr_error *error);

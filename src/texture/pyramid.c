@@ -20,7 +20,6 @@
 
 #include <string.h>
 
-
 // ---- packing ----
 
 typedef uint16_t u16x4 __attribute__((vector_size(8)));
@@ -33,7 +32,9 @@ static inline u16x4 halves_from_floats(f32x4 x)
 {
     u32x4 bits = (u32x4)(x * 0x1p-112f); // the exponents of binary16 now stand where those of binary32 do
     u32x4 magnitude = ((bits & 0x7fffffffu) + 0x1000u) >> 13;
-    u32x4 is_large = (u32x4)(magnitude > 0x7b53u); // 6e4: black and white have x = -inf and inf; here s is then within 1e-10 of 0 and 1
+    u32x4 is_large =
+        (u32x4)(magnitude >
+                0x7b53u); // 6e4: black and white have x = -inf and inf; here s is then within 1e-10 of 0 and 1
     magnitude = (magnitude & ~is_large) | (0x7b53u & is_large);
     return __builtin_convertvector((bits >> 16 & 0x8000u) | magnitude, u16x4);
 }
@@ -145,7 +146,8 @@ static void fetch_row(const struct source *s, uint32_t x0, uint32_t count, uint3
             out[x] = fetch(s, x0 + x, y);
         return;
     }
-    const unsigned char *b = (const unsigned char *)t->bytes + ((size_t)y * s->width + x0) * s->channels; // as most images are
+    const unsigned char *b =
+        (const unsigned char *)t->bytes + ((size_t)y * s->width + x0) * s->channels; // as most images are
     for (uint32_t x = 0; x < count; ++x, b += s->channels)
         out[x] = (struct sr_rgb){t->decode[b[0]], t->decode[b[1]], t->decode[b[2]]};
 }
@@ -256,7 +258,8 @@ static void halve_row(void *context, uint64_t y)
             for (int j = 0; j < row_count; ++j) {
                 fetch_row(s, begin, end - begin, rows[j], row);
                 for (uint32_t i = 0; i < end - begin; ++i)
-                    mean[i] = (struct sr_rgb){mean[i].r + row_share[j] * row[i].r, mean[i].g + row_share[j] * row[i].g, mean[i].b + row_share[j] * row[i].b};
+                    mean[i] = (struct sr_rgb){mean[i].r + row_share[j] * row[i].r, mean[i].g + row_share[j] * row[i].g,
+                                              mean[i].b + row_share[j] * row[i].b};
             }
         }
         struct sr_rgb sum = {0};

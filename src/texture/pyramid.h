@@ -31,7 +31,8 @@ struct sr_pyramid_adjust {
 };
 
 /* Halves the image by box filters, in linear light, until one texel is left: each level has the image's mean. Float:
- * the grey value, alpha where there is one that is not 1 everywhere, or the mean of R, G and B. Spectrum: the curve that the use gives RGB. */
+ * the grey value, alpha where there is one that is not 1 everywhere, or the mean of R, G and B. Spectrum: the curve
+ * that the use gives RGB. */
 sr_status sr_pyramid_build(struct sr_pyramid *p, const struct sr_texels *texels, bool is_float,
                            struct sr_pyramid_adjust adjust, struct sr_texture_use use, struct sr_arena *arena,
                            struct sr_error *error);

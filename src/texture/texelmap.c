@@ -4,9 +4,9 @@
  *     (s, t) = (a u + b v + c, d u + e v + f),   transform = (a b c d e f)
  *     number: offset + scale texel,   colour: factor RGB, component by component, made a spectrum
  *
- * (u, v) are the surface's, or, where the mesh gives a pair for each corner of each triangle, those (corners.h). t counts
- * upward and rows of texels downward, as in imagemap; the two directions wrap each in its own way, and "mirror" turns
- * every other repetition around. Interpolated between texel centres; colours as their curves (pyramid.c).
+ * (u, v) are the surface's, or, where the mesh gives a pair for each corner of each triangle, those (corners.h). t
+ * counts upward and rows of texels downward, as in imagemap; the two directions wrap each in its own way, and "mirror"
+ * turns every other repetition around. Interpolated between texel centres; colours as their curves (pyramid.c).
  * glTF 2.0, Khronos Group 2021, 3.8; KHR_texture_transform. Limits: no levels of detail. */
 #include "texture/corners.h"
 #include "texture/private.h"
@@ -24,7 +24,7 @@ struct texelmap {
     struct sr_slice transform; // six numbers, or none
     struct sr_slice uv;        // sr_vec2, three a triangle, or none
     struct sr_texels texels;
-    float m[6]; // derived: the transform
+    float m[6];           // derived: the transform
     const uint8_t *bytes; // derived, of numbers: one channel; or
     const float *floats;
     const float *decode;
@@ -40,7 +40,9 @@ struct texelmap {
         {SR_PARAM_ENUM, "swrap", "1", 0, 2, 0, OFFSET(swrap), "repeat|clamp|mirror"},                                  \
         {SR_PARAM_ENUM, "twrap", "1", 0, 2, 0, OFFSET(twrap), "repeat|clamp|mirror"},                                  \
         {SR_PARAM_FLOATS, "transform", "1", -INFINITY, INFINITY, NAN, OFFSET(transform), "a b c d e f; identity"},     \
-        {SR_PARAM_POINT2S, "uv", "1", -INFINITY, INFINITY, NAN, OFFSET(uv), "coordinates of each triangle's corners"}
+    {                                                                                                                  \
+        SR_PARAM_POINT2S, "uv", "1", -INFINITY, INFINITY, NAN, OFFSET(uv), "coordinates of each triangle's corners"    \
+    }
 static const struct sr_param params_float[] = {
     COMMON_ROWS,
     {SR_PARAM_ENUM, "channel", "1", 0, 4, 4, OFFSET(channel), "r|g|b|a|mean"},
@@ -149,9 +151,9 @@ static sr_status check(struct texelmap *m, struct sr_error *error)
 static float texel_of(const struct sr_texels *t, size_t pixel, uint32_t channel)
 {
     size_t i = pixel * t->channels + channel;
-    return t->floats                          ? t->floats[i]
-           : channel == 3 || !t->decode       ? (float)t->bytes[i] * (1 / 255.0f)
-                                              : t->decode[t->bytes[i]];
+    return t->floats                    ? t->floats[i]
+           : channel == 3 || !t->decode ? (float)t->bytes[i] * (1 / 255.0f)
+                                        : t->decode[t->bytes[i]];
 }
 
 // one channel by itself; grey images are the same in r, g and b, and what has no alpha is opaque
@@ -195,7 +197,8 @@ static sr_status tinted(const struct texelmap *m, const float factor[3], float *
     for (size_t p = 0; *out && p < count; ++p)
         for (uint32_t k = 0; k < 3; ++k)
             (*out)[3 * p + k] = factor[k] * texel_of(t, p, t->channels < 3 ? 0 : k);
-    return *out ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for %u x %u texels", t->width, t->height);
+    return *out ? SR_OK
+                : sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for %u x %u texels", t->width, t->height);
 }
 
 static sr_status prepare_spectrum(void *self, struct sr_texture_use use, struct sr_arena *arena, struct sr_error *error)

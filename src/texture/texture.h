@@ -38,11 +38,11 @@ struct sr_texture_model {
     const char *name; // the scene file's word: "imagemap"
     const struct sr_param *params;
     size_t size;
-    bool is_float, is_spectrum;                           // which of the two eval functions exists
+    bool is_float, is_spectrum;                             // which of the two eval functions exists
     size_t texels_offset, mapping_offset, transform_offset; // [B] in the struct; SR_TEXTURE_NOWHERE: has none
     sr_status (*prepare)(void *self, struct sr_texture_use use, struct sr_arena *arena, struct sr_error *error);
-    /* Before prepare: takes over what another texture of this model, prepared for the same use, has made of the same texels, if it
-     * would come out the same; prepare then does the rest. NULL: has nothing worth it. */
+    /* Before prepare: takes over what another texture of this model, prepared for the same use, has made of the same
+     * texels, if it would come out the same; prepare then does the rest. NULL: has nothing worth it. */
     void (*share)(void *self, const void *other);
     float (*eval_float)(const void *self, const struct sr_point *x);
     sr_spectrum (*eval_spectrum)(const void *self, const struct sr_point *x, const struct sr_wavelengths *w);
@@ -51,7 +51,7 @@ struct sr_texture_model {
     bool (*constant_spectrum)(const void *self, struct sr_spd *value);
 };
 #define SR_TEXTURE_NOWHERE SIZE_MAX
-extern const struct sr_texture_model *const sr_texture_models[]; // ends with NULL
+extern const struct sr_texture_model *const sr_texture_models[];                       // ends with NULL
 const struct sr_texture_model *sr_texture_model_find(const char *name, bool is_float); // NULL: unknown
 
 static inline float sr_texture_float(struct sr_texture t, const struct sr_point *x)
@@ -87,8 +87,8 @@ enum sr_mapping_kind { SR_MAPPING_UV, SR_MAPPING_SPHERICAL, SR_MAPPING_CYLINDRIC
 struct sr_mapping {
     int32_t kind;
     float uscale, vscale, udelta, vdelta;
-    sr_vec3 v1, v2;                          // planar axes [1/m]
-    struct sr_transform world_to_texture;    // set by the importer from the transform at the directive
+    sr_vec3 v1, v2;                       // planar axes [1/m]
+    struct sr_transform world_to_texture; // set by the importer from the transform at the directive
 };
 struct sr_mapped {
     sr_vec2 st;

@@ -9,7 +9,8 @@ struct threshold {
 
 static const struct sr_param params[] = {
     {SR_PARAM_FLOAT_TEXTURE, "tex", "1", -INFINITY, INFINITY, 1, offsetof(struct threshold, tex), "what is compared"},
-    {SR_PARAM_FLOAT, "cutoff", "1", -INFINITY, INFINITY, 0.5, offsetof(struct threshold, cutoff), "the least value that counts as 1"},
+    {SR_PARAM_FLOAT, "cutoff", "1", -INFINITY, INFINITY, 0.5, offsetof(struct threshold, cutoff),
+     "the least value that counts as 1"},
     {0},
 };
 

@@ -13,7 +13,8 @@ static uint64_t hash_of(struct sr_render_job job, int threads, int tile)
     struct sr_error error = {0};
     void *bytes;
     size_t size;
-    if (sr_render_image(film, true, job.replicates > 0, &image, &error) != SR_OK || sr_image_encode(".exr", image, NULL, &bytes, &size, &error) != SR_OK)
+    if (sr_render_image(film, true, job.replicates > 0, &image, &error) != SR_OK ||
+        sr_image_encode(".exr", image, NULL, &bytes, &size, &error) != SR_OK)
         test_fail(__FILE__, __LINE__, "%s", error.text);
     uint64_t hash = sr_hash_bytes(bytes, size, 1);
     sr_free(bytes);
@@ -78,11 +79,14 @@ TEST(bytes_of_what_moves_do_not_depend_on_threads_or_tiles)
     struct sr_import_options options = {.width = 70, .height = 50, .spp = 8};
     struct sr_import_result scene;
     struct sr_error error = {0};
-    if (!import_scene(scene_file("moving.pbrt", "LookAt 0 0 -3.4  0 0 0  0 1 0 ActiveTransform EndTime Rotate 9 1 2 3 ActiveTransform All Camera \"perspective\"\n"
-                                                "Film \"rgb\" \"string filename\" \"a.exr\" WorldBegin LightSource \"infinite\"\n"
-                                                "ActiveTransform EndTime Rotate 50 2 -1 1 Translate .3 .2 .1 ActiveTransform All\n"
-                                                "Translate .1 0 0 Scale .5 .6 .7 Shape \"sphere\" Shape \"cylinder\" \"float radius\" 1.2\n"),
-                      &options, &scene, &error))
+    if (!import_scene(
+            scene_file(
+                "moving.pbrt",
+                "LookAt 0 0 -3.4  0 0 0  0 1 0 ActiveTransform EndTime Rotate 9 1 2 3 ActiveTransform All Camera \"perspective\"\n"
+                "Film \"rgb\" \"string filename\" \"a.exr\" WorldBegin LightSource \"infinite\"\n"
+                "ActiveTransform EndTime Rotate 50 2 -1 1 Translate .3 .2 .1 ActiveTransform All\n"
+                "Translate .1 0 0 Scale .5 .6 .7 Shape \"sphere\" Shape \"cylinder\" \"float radius\" 1.2\n"),
+            &options, &scene, &error))
         test_fail(__FILE__, __LINE__, "%s", error.text);
     struct sr_render_job job = job_of(&scene);
     uint64_t one = hash_of(job, 1, 16);

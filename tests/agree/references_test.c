@@ -6,9 +6,9 @@
  *   - each channel's mean is within 0.5 % + 3 standard errors of both,
  *   - at least 99 % of the blocks (97 % where the reference's own mean is uncertain by more than 0.2 %) are within four
  *     combined standard errors, an error being pooled over 3 x 3 blocks, with a floor of 0.1 % of the block.
- * At the few samples taken here for time's sake, one difference of two seeds knows the error of a block badly where lamps are
- * small or glass disperses light; so our own error is the larger of that and of what our error bars say. SR_TEST_SPP sets
- * another number of samples. */
+ * At the few samples taken here for time's sake, one difference of two seeds knows the error of a block badly where
+ * lamps are small or glass disperses light; so our own error is the larger of that and of what our error bars say.
+ * SR_TEST_SPP sets another number of samples. */
 #include "agree/render_helper.h"
 
 enum { BLOCK = 16 };
@@ -34,7 +34,9 @@ static struct blocks blocks_of(const struct sr_image *image)
     for (int y = 0; y < b.h * BLOCK; ++y)
         for (int x = 0; x < b.w * BLOCK; ++x)
             for (int c = 0; c < 3; ++c)
-                *at(&b, x / BLOCK, y / BLOCK, c) += (double)image->floats[sr_image_index(image, (uint32_t)x, (uint32_t)y) + (size_t)c] / (BLOCK * BLOCK);
+                *at(&b, x / BLOCK, y / BLOCK, c) +=
+                    (double)image->floats[sr_image_index(image, (uint32_t)x, (uint32_t)y) + (size_t)c] /
+                    (BLOCK * BLOCK);
     return b;
 }
 
@@ -44,7 +46,12 @@ static double pooled(const struct blocks *half, int x, int y, int c)
     double sum = 0;
     for (int j = -1; j <= 1; ++j)
         for (int i = -1; i <= 1; ++i) {
-            int xx = x + i < 0 ? 0 : x + i >= half->w ? half->w - 1 : x + i, yy = y + j < 0 ? 0 : y + j >= half->h ? half->h - 1 : y + j;
+            int xx = x + i < 0          ? 0
+                     : x + i >= half->w ? half->w - 1
+                                        : x + i,
+                yy = y + j < 0          ? 0
+                     : y + j >= half->h ? half->h - 1
+                                        : y + j;
             double d = *at(half, xx, yy, c);
             sum += d * d;
         }
@@ -62,7 +69,9 @@ static double told(struct sr_image *const ours[2], int x, int y, int c)
         EXPECT(channel >= 0);
         for (int j = 0; j < BLOCK; ++j)
             for (int i = 0; i < BLOCK; ++i) {
-                double se = (double)ours[k]->floats[sr_image_index(ours[k], (uint32_t)(x * BLOCK + i), (uint32_t)(y * BLOCK + j)) + (size_t)channel];
+                double se = (double)ours[k]
+                                ->floats[sr_image_index(ours[k], (uint32_t)(x * BLOCK + i), (uint32_t)(y * BLOCK + j)) +
+                                         (size_t)channel];
                 sum += se * se;
             }
     }
@@ -97,7 +106,8 @@ static bool compare_row(const struct row *row, struct sr_image *const ours[2], c
     if (sr_image_read(path, &half_image, &error) != SR_OK)
         test_fail(__FILE__, __LINE__, "%s", error.text);
 
-    struct blocks a = blocks_of(ours[0]), b = blocks_of(ours[1]), r = blocks_of(reference), half = make_blocks(a.w, a.h), half_reference = make_blocks(a.w, a.h);
+    struct blocks a = blocks_of(ours[0]), b = blocks_of(ours[1]), r = blocks_of(reference),
+                  half = make_blocks(a.w, a.h), half_reference = make_blocks(a.w, a.h);
     double reference_mean[3], mean_a[3], mean_b[3];
     image_means(reference, reference_mean);
     image_means(ours[0], mean_a);
@@ -107,14 +117,16 @@ static bool compare_row(const struct row *row, struct sr_image *const ours[2], c
         for (int x = 0; x < a.w; ++x)
             for (int c = 0; c < 3; ++c) {
                 *at(&half, x, y, c) = (*at(&a, x, y, c) - *at(&b, x, y, c)) / 2;
-                *at(&half_reference, x, y, c) = (double)half_image->floats[sr_image_index(half_image, (uint32_t)x, (uint32_t)y) + (size_t)c];
+                *at(&half_reference, x, y, c) =
+                    (double)half_image->floats[sr_image_index(half_image, (uint32_t)x, (uint32_t)y) + (size_t)c];
             }
     int good = 0;
     for (int y = 0; y < a.h; ++y)
         for (int x = 0; x < a.w; ++x) {
             bool is_good = true;
             for (int c = 0; c < 3; ++c) {
-                double se = sqrt(fmax(pooled(&half, x, y, c), told(ours, x, y, c)) + pooled(&half_reference, x, y, c)) + 1e-3 * *at(&r, x, y, c) + 1e-6 * overall;
+                double se = sqrt(fmax(pooled(&half, x, y, c), told(ours, x, y, c)) + pooled(&half_reference, x, y, c)) +
+                            1e-3 * *at(&r, x, y, c) + 1e-6 * overall;
                 is_good &= fabs((*at(&a, x, y, c) + *at(&b, x, y, c)) / 2 - *at(&r, x, y, c)) <= 4 * se;
             }
             good += is_good;
@@ -125,7 +137,8 @@ static bool compare_row(const struct row *row, struct sr_image *const ours[2], c
     for (int c = 0; c < 3; ++c) {
         double squares = 0;
         for (int i = 0; i < a.w * a.h; ++i)
-            squares += half.v[i * 3 + c] * half.v[i * 3 + c] + half_reference.v[i * 3 + c] * half_reference.v[i * 3 + c];
+            squares +=
+                half.v[i * 3 + c] * half.v[i * 3 + c] + half_reference.v[i * 3 + c] * half_reference.v[i * 3 + c];
         double difference = (mean_a[c] + mean_b[c]) / 2 - reference_mean[c];
         ratio[c] = 1 + difference / reference_mean[c];
         ok &= fabs(difference) <= 0.005 * reference_mean[c] + 3 * sqrt(squares) / n;
@@ -133,7 +146,8 @@ static bool compare_row(const struct row *row, struct sr_image *const ours[2], c
             need = 0.97;
     }
     ok &= good >= need * n;
-    snprintf(text, size, "mean ratio %.4f %.4f %.4f, blocks %.3f (at least %.2f)", ratio[0], ratio[1], ratio[2], good / n, need);
+    snprintf(text, size, "mean ratio %.4f %.4f %.4f, blocks %.3f (at least %.2f)", ratio[0], ratio[1], ratio[2],
+             good / n, need);
     sr_free(a.v), sr_free(b.v), sr_free(r.v), sr_free(half.v), sr_free(half_reference.v);
     sr_image_free(reference);
     sr_image_free(half_image);
@@ -149,8 +163,9 @@ static bool next_row(char **cursor, struct row *row)
     *cursor = end ? end + 1 : line + strlen(line);
     if (end)
         *end = 0;
-    return sscanf(line, "%255s %*d %*d %*d %lf %lf %lf %lf %lf %lf %255s %255s", row->scene, &row->mean[0], &row->mean[1], &row->mean[2], &row->se[0], &row->se[1],
-                  &row->se[2], row->mean_image, row->half_image) == 9;
+    return sscanf(line, "%255s %*d %*d %*d %lf %lf %lf %lf %lf %lf %255s %255s", row->scene, &row->mean[0],
+                  &row->mean[1], &row->mean[2], &row->se[0], &row->se[1], &row->se[2], row->mean_image,
+                  row->half_image) == 9;
 }
 
 TEST(scenes_agree_with_reference_images)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "agree/render_helper.h"
 
-bool import_scene(const char *path, const struct sr_import_options *options, struct sr_import_result *scene, struct sr_error *error)
+bool import_scene(const char *path, const struct sr_import_options *options, struct sr_import_result *scene,
+                  struct sr_error *error)
 {
     struct sr_import_options none = {0};
     struct sr_log silent = {0};
@@ -11,9 +12,17 @@ bool import_scene(const char *path, const struct sr_import_options *options, str
 struct sr_render_job job_of(const struct sr_import_result *scene)
 {
     return (struct sr_render_job){
-        .scene = scene->scene, .sensor = scene->sensor, .filter = scene->filter, .integrator = scene->integrator, .film = scene->film,
-        .sampler = scene->sampler, .seed = scene->seed, .spp = scene->spp, .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
-        .jitter_pixel = scene->jitter_pixel, .jitter_lambda = scene->jitter_lambda,
+        .scene = scene->scene,
+        .sensor = scene->sensor,
+        .filter = scene->filter,
+        .integrator = scene->integrator,
+        .film = scene->film,
+        .sampler = scene->sampler,
+        .seed = scene->seed,
+        .spp = scene->spp,
+        .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
+        .jitter_pixel = scene->jitter_pixel,
+        .jitter_lambda = scene->jitter_lambda,
     };
 }
 

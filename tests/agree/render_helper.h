@@ -8,8 +8,10 @@
 #include "import/import.h"
 #include "render/render.h"
 
-/* Imports the scene or fails the test; text of an error goes to *error_text where it is not NULL, and false comes back. */
-bool import_scene(const char *path, const struct sr_import_options *options, struct sr_import_result *scene, struct sr_error *error);
+/* Imports the scene or fails the test; text of an error goes to *error_text where it is not NULL, and false comes back.
+ */
+bool import_scene(const char *path, const struct sr_import_options *options, struct sr_import_result *scene,
+                  struct sr_error *error);
 /* A job with the scene's own settings. */
 struct sr_render_job job_of(const struct sr_import_result *scene);
 /* The film, or a failed test. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A render that is stopped again and again and gone on with has the sums of one that was left alone: films, counts, and all. */
+/* A render that is stopped again and again and gone on with has the sums of one that was left alone: films, counts, and
+ * all. */
 #include "agree/render_helper.h"
 
 #include <sys/stat.h>
@@ -22,7 +23,8 @@ static void on_progress(void *user, const struct sr_render_progress *p)
 static bool are_equal(const struct sr_film *a, const struct sr_film *b)
 {
     size_t n = (size_t)a->width * a->height;
-    bool same = memcmp(a->pixels, b->pixels, n * sizeof *a->pixels) == 0 && memcmp(a->aov, b->aov, n * sizeof *a->aov) == 0;
+    bool same =
+        memcmp(a->pixels, b->pixels, n * sizeof *a->pixels) == 0 && memcmp(a->aov, b->aov, n * sizeof *a->aov) == 0;
     if (a->buckets)
         same &= memcmp(a->buckets, b->buckets, n * a->settings.buckets * sizeof *a->buckets) == 0;
     if (a->splats)
@@ -72,8 +74,8 @@ static void expect_same_sums(struct sr_render_job job)
     }
     EXPECT(stops > 3); // or nothing was shown
     EXPECT(are_equal(film, expected));
-    EXPECT(report.paths == alone.paths && report.rays == alone.rays && report.shadow_rays == alone.shadow_rays && report.vertices == alone.vertices &&
-           report.dropped == alone.dropped);
+    EXPECT(report.paths == alone.paths && report.rays == alone.rays && report.shadow_rays == alone.shadow_rays &&
+           report.vertices == alone.vertices && report.dropped == alone.dropped);
     sr_render_forget(&keep);
     EXPECT(!sr_file_exists(beside("")) && !sr_file_exists(beside("~")) && !sr_file_exists(beside(".new")));
     sr_film_destroy(film);
@@ -85,7 +87,8 @@ static void expect_resumes(const char *integrator, uint32_t replicates, uint32_t
 {
     struct sr_import_result scene;
     struct sr_error error = {0};
-    struct sr_import_options options = {.width = 40, .height = 30, .spp = is_slow_build() ? 16 : 64, .integrator = integrator};
+    struct sr_import_options options = {
+        .width = 40, .height = 30, .spp = is_slow_build() ? 16 : 64, .integrator = integrator};
     if (!import_scene(SR_TEST_SOURCE_DIR "/scenes/cornell-box.pbrt", &options, &scene, &error))
         test_fail(__FILE__, __LINE__, "%s", error.text);
     struct sr_render_job job = job_of(&scene);
@@ -126,13 +129,18 @@ TEST(finished_work_can_be_kept)
     struct sr_render_job job = job_of(&scene);
     job.with_aov = true;
     struct sr_arena arena = {0};
-    struct sr_render_keep keep = {.path = beside(""), .identity = sr_render_identity(&arena, &job, "hash 1\n"), .interval_s = 60, .resumes = true};
+    struct sr_render_keep keep = {.path = beside(""),
+                                  .identity = sr_render_identity(&arena, &job, "hash 1\n"),
+                                  .interval_s = 60,
+                                  .resumes = true};
     job.keep = &keep;
     struct sr_render_report first, second;
     struct sr_film *film = render_or_fail(&job, &first);
-    EXPECT(first.kept.written == 0 && sr_render_checkpoint(&job, film, &first, &error) == SR_OK && first.kept.written == 1);
+    EXPECT(first.kept.written == 0 && sr_render_checkpoint(&job, film, &first, &error) == SR_OK &&
+           first.kept.written == 1);
     struct sr_film *again = render_or_fail(&job, &second);
-    EXPECT(are_equal(film, again) && second.kept.resumed_share == 1 && second.is_complete && second.rays == first.rays && second.dropped == first.dropped);
+    EXPECT(are_equal(film, again) && second.kept.resumed_share == 1 && second.is_complete &&
+           second.rays == first.rays && second.dropped == first.dropped);
     sr_render_forget(&keep);
     sr_film_destroy(film);
     sr_film_destroy(again);

@@ -1,22 +1,28 @@
 /* SPDX-License-Identifier: MIT */
-/* Samples that are shared out by noise: without bias where stopping rules fail, the same for any number of threads, at the error
- * that was aimed at, with intervals that cover. */
+/* Samples that are shared out by noise: without bias where stopping rules fail, the same for any number of threads, at
+ * the error that was aimed at, with intervals that cover. */
 #include "analytic/analytic.h"
 
-/* A grey surface that one path in a hundred leaves toward the light: a cap of sin^2 = 0.01, found by the surface alone. */
-#define RARE_FILM "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nPixelFilter \"box\"\nIntegrator \"simplepath\" \"integer maxdepth\" 1 "
-static const char rare[] = "LookAt 0 -1 0.5  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 0.01\n" RARE_FILM "\"bool samplelights\" false\nWorldBegin\n"
-                           "Material \"diffuse\" \"spectrum reflectance\" [360 0.5 830 0.5]\nShape \"disk\" \"float radius\" 1\n"
-                           BLACK GLOW "Translate 0 0 1 Shape \"sphere\" \"float radius\" 0.1\n";
+/* A grey surface that one path in a hundred leaves toward the light: a cap of sin^2 = 0.01, found by the surface alone.
+ */
+#define RARE_FILM                                                                                                      \
+    "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nPixelFilter \"box\"\nIntegrator \"simplepath\" \"integer maxdepth\" 1 "
+static const char rare[] =
+    "LookAt 0 -1 0.5  0 0 0  0 0 1\nCamera \"perspective\" \"float fov\" 0.01\n" RARE_FILM
+    "\"bool samplelights\" false\nWorldBegin\n"
+    "Material \"diffuse\" \"spectrum reflectance\" [360 0.5 830 0.5]\nShape \"disk\" \"float radius\" 1\n" BLACK GLOW
+    "Translate 0 0 1 Shape \"sphere\" \"float radius\" 0.1\n";
 static const double rare_luminance = 0.5 * 0.01; // rho L sin^2
 
-#define ROOM "LookAt 0.5 0.05 0.5  0.5 1 0.4  0 0 1\nCamera \"perspective\" \"float fov\" 70\nFilm \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 24\n" \
-    "PixelFilter \"box\"\nIntegrator \"path\" \"integer maxdepth\" 8\nWorldBegin\n" GREY \
-    "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0 0 0 1 1 0 1 0 1 1 1 1 1] " \
-    "\"integer indices\" [0 1 2 3 4 5 6 7 0 1 4 5 2 3 6 7 0 2 4 6 1 3 5 7]\n" BLACK GLOW "ReverseOrientation " \
+#define ROOM                                                                                                                                               \
+    "LookAt 0.5 0.05 0.5  0.5 1 0.4  0 0 1\nCamera \"perspective\" \"float fov\" 70\nFilm \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 24\n" \
+    "PixelFilter \"box\"\nIntegrator \"path\" \"integer maxdepth\" 8\nWorldBegin\n" GREY                                                                   \
+    "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0 0 0 1 1 0 1 0 1 1 1 1 1] "                                                               \
+    "\"integer indices\" [0 1 2 3 4 5 6 7 0 1 4 5 2 3 6 7 0 2 4 6 1 3 5 7]\n" BLACK GLOW "ReverseOrientation "                                             \
     "Shape \"bilinearmesh\" \"point3 P\" [0.4 0.4 0.99 0.6 0.4 0.99 0.4 0.6 0.99 0.6 0.6 0.99]\n"
 
-static struct sr_film *render(struct sr_render_job job, uint32_t seed, uint32_t spp, double error_goal, bool is_adaptive)
+static struct sr_film *render(struct sr_render_job job, uint32_t seed, uint32_t spp, double error_goal,
+                              bool is_adaptive)
 {
     struct sr_film *film;
     struct sr_render_report report;
@@ -63,7 +69,8 @@ static double stopped(const struct sr_render_job *job, uint32_t x, uint32_t y, u
     while (t.n < 2048 && (t.n < 16 || t.n % 4 || sr_tally_standard_error(&t) > 0.1 * t.mean)) {
         float rgb[3];
         sr_render_sample(&own, x, y, 0, (uint32_t)t.n, rgb, NULL, &worker);
-        sr_tally_add(&t, luminance()[0] * (double)rgb[0] + luminance()[1] * (double)rgb[1] + luminance()[2] * (double)rgb[2]);
+        sr_tally_add(&t, luminance()[0] * (double)rgb[0] + luminance()[1] * (double)rgb[1] +
+                             luminance()[2] * (double)rgb[2]);
     }
     return t.mean;
 }
@@ -85,8 +92,10 @@ TEST(sharing_out_is_unbiased_where_one_path_in_a_hundred_counts)
     }
     for (uint32_t i = 0; i < 256; ++i)
         sr_tally_add(&naive, stopped(&w.job, i % 8, i / 8 % 8, 7 + i / 64) / rare_luminance);
-    printf("one path in a hundred: ours %.4f +- %.4f of the truth, %.0f samples a pixel; a stopping rule %.3f +- %.3f\n", ours.mean,
-           sr_tally_standard_error(&ours), (double)spent / (double)ours.n, naive.mean, sr_tally_standard_error(&naive));
+    printf(
+        "one path in a hundred: ours %.4f +- %.4f of the truth, %.0f samples a pixel; a stopping rule %.3f +- %.3f\n",
+        ours.mean, sr_tally_standard_error(&ours), (double)spent / (double)ours.n, naive.mean,
+        sr_tally_standard_error(&naive));
     EXPECT_MEAN(ours, 1);
     EXPECT(is_slow_build() || sr_tally_standard_error(&ours) < 0.01);
     EXPECT(naive.mean < 0.5); // what is to be avoided
@@ -143,9 +152,11 @@ TEST(the_error_aimed_at_is_reached)
 /* Half the picture is a sky without noise: as many samples do more on the other half. */
 TEST(samples_go_where_the_noise_is)
 {
-    struct world w = world_of("LookAt 0 -3 0.2  0 0 0.2  0 0 1\nCamera \"perspective\" \"float fov\" 40\nFilm \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 24\n"
-                              "PixelFilter \"box\"\nIntegrator \"path\" \"integer maxdepth\" 3\nWorldBegin\nLightSource \"infinite\" \"float scale\" 0.1\n" GREY
-                              "Translate 0 0 -0.3 Shape \"disk\" \"float radius\" 2\n" BLACK GLOW "Translate 0.6 0 0.5 Shape \"sphere\" \"float radius\" 0.1\n");
+    struct world w = world_of(
+        "LookAt 0 -3 0.2  0 0 0.2  0 0 1\nCamera \"perspective\" \"float fov\" 40\nFilm \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 24\n"
+        "PixelFilter \"box\"\nIntegrator \"path\" \"integer maxdepth\" 3\nWorldBegin\nLightSource \"infinite\" \"float scale\" 0.1\n" GREY
+        "Translate 0 0 -0.3 Shape \"disk\" \"float radius\" 2\n" BLACK GLOW
+        "Translate 0.6 0 0.5 Shape \"sphere\" \"float radius\" 0.1\n");
     struct sr_film *reference = render(w.job, 77, is_slow_build() ? 512 : 4096, 0, false);
     double error[2] = {0};
     for (uint32_t s = 0; s < 4; ++s)
@@ -187,6 +198,10 @@ TEST(intervals_of_shared_out_samples_cover)
         sr_film_destroy(film);
     }
     printf("intervals of shared out samples cover %.2f %%\n", 100 * covered / all);
-    EXPECT(is_slow_build() || (covered / all > 0.92 && covered / all < 0.985)); // the reference has an error, too; pilot and rest share one variance, which is on the safe side
+    EXPECT(
+        is_slow_build() ||
+        (covered / all > 0.92 &&
+         covered / all <
+             0.985)); // the reference has an error, too; pilot and rest share one variance, which is on the safe side
     world_free(&w);
 }

@@ -36,9 +36,10 @@ void check(const struct row *row, const char *how, struct estimate e, double goa
     double z = z_of(e, row->value), relative = e.mean / row->value - 1, relative_error = e.error / fabs(row->value);
     // a slow build takes few samples, too few for a tail of a distribution: it looks for faults of memory
     bool is_right = fabs(z) < (is_slow_build() ? 10 : 4.9) || fabs(relative) <= FLOAT_GOAL;
-    bool is_sharp = is_slow_build() || relative_error <= goal / sqrt(fmax(1, fmin(effort(), goal * goal / (GOAL * GOAL))));
-    printf("  %-12s %-10s %-16.12g %-16.10g +- %-9.2e %+9.2e %7.2f %s%s\n", row->id, how, row->value, e.mean, e.error, relative, z,
-           is_right ? "" : "WRONG ", is_sharp ? "" : "NOT SHARP");
+    bool is_sharp =
+        is_slow_build() || relative_error <= goal / sqrt(fmax(1, fmin(effort(), goal * goal / (GOAL * GOAL))));
+    printf("  %-12s %-10s %-16.12g %-16.10g +- %-9.2e %+9.2e %7.2f %s%s\n", row->id, how, row->value, e.mean, e.error,
+           relative, z, is_right ? "" : "WRONG ", is_sharp ? "" : "NOT SHARP");
     failures += !is_right || !is_sharp;
 }
 
@@ -46,7 +47,8 @@ void run_rows(const char *title, const struct row *rows)
 {
     failures = 0;
     setvbuf(stdout, NULL, _IOLBF, 0);
-    printf("%s\n  %-12s %-10s %-16s %-16s    %-9s %9s %7s\n", title, "id", "how", "value", "ours", "SE", "relative", "z");
+    printf("%s\n  %-12s %-10s %-16s %-16s    %-9s %9s %7s\n", title, "id", "how", "value", "ours", "SE", "relative",
+           "z");
     const char *only = getenv("STERADIAN_TEST_ROWS"); // how their ids begin
     for (const struct row *row = rows; row->id; ++row)
         if (!only || strncmp(row->id, only, strlen(only)) == 0)
@@ -70,12 +72,22 @@ struct world world_of(const char *format, ...)
     struct sr_log silent = {0};
     struct sr_import_options options = {0};
     struct world w = {0};
-    if (sr_file_write(path, text, (size_t)length, &error) != SR_OK || sr_import_pbrt(path, &options, &w.scene, &silent, &error) != SR_OK)
+    if (sr_file_write(path, text, (size_t)length, &error) != SR_OK ||
+        sr_import_pbrt(path, &options, &w.scene, &silent, &error) != SR_OK)
         test_fail(__FILE__, __LINE__, "%s", error.text);
     const struct sr_import_result *s = &w.scene;
     w.job = (struct sr_render_job){
-        .scene = s->scene, .sensor = s->sensor, .filter = s->filter, .integrator = s->integrator, .film = s->film, .sampler = s->sampler,
-        .seed = 1, .spp = s->spp, .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX}, .jitter_pixel = true, .jitter_lambda = true,
+        .scene = s->scene,
+        .sensor = s->sensor,
+        .filter = s->filter,
+        .integrator = s->integrator,
+        .film = s->film,
+        .sampler = s->sampler,
+        .seed = 1,
+        .spp = s->spp,
+        .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
+        .jitter_pixel = true,
+        .jitter_lambda = true,
     };
     return w;
 }
@@ -97,12 +109,14 @@ const char *receiver_text(const double p[3], const double n[3])
         for (int k = 0; k < 4; ++k)
             v[k][i] = p[i] + 1e-3 * ((k & 1 ? 1 : -1) * t[i] + (k & 2 ? 1 : -1) * b[i]);
     }
-    snprintf(text, sizeof text,
-             "LookAt %.9g %.9g %.9g  %.9g %.9g %.9g  %.9g %.9g %.9g\nCamera \"perspective\" \"float fov\" 0.01\n"
-             "Film \"rgb\" \"integer xresolution\" 1 \"integer yresolution\" 1\nPixelFilter \"box\"\nWorldBegin\n"
-             "AttributeBegin\n" GREY "Shape \"bilinearmesh\" \"point3 P\" [%.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g]\nAttributeEnd\n",
-             eye[0], eye[1], eye[2], p[0], p[1], p[2], N[0], N[1], N[2], v[0][0], v[0][1], v[0][2], v[1][0], v[1][1], v[1][2], v[2][0], v[2][1],
-             v[2][2], v[3][0], v[3][1], v[3][2]);
+    snprintf(
+        text, sizeof text,
+        "LookAt %.9g %.9g %.9g  %.9g %.9g %.9g  %.9g %.9g %.9g\nCamera \"perspective\" \"float fov\" 0.01\n"
+        "Film \"rgb\" \"integer xresolution\" 1 \"integer yresolution\" 1\nPixelFilter \"box\"\nWorldBegin\n"
+        "AttributeBegin\n" GREY
+        "Shape \"bilinearmesh\" \"point3 P\" [%.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g]\nAttributeEnd\n",
+        eye[0], eye[1], eye[2], p[0], p[1], p[2], N[0], N[1], N[2], v[0][0], v[0][1], v[0][2], v[1][0], v[1][1],
+        v[1][2], v[2][0], v[2][1], v[2][2], v[3][0], v[3][1], v[3][2]);
     return text;
 }
 
@@ -167,8 +181,8 @@ static struct estimate run_once(struct estimating *e, void (*replicate)(void *, 
     return (struct estimate){tally.mean, sr_tally_standard_error(&tally), REPLICATES - 1};
 }
 
-/* Whoever asks names the most samples. A sixteenth of them, or a quarter, are enough where they are much sharper than any
- * row demands: the spread alone decides, not what it is around. */
+/* Whoever asks names the most samples. A sixteenth of them, or a quarter, are enough where they are much sharper than
+ * any row demands: the spread alone decides, not what it is around. */
 static struct estimate run(struct estimating *e, void (*replicate)(void *, uint64_t))
 {
     uint32_t most = e->n;
@@ -192,7 +206,8 @@ struct estimate mean_luminance(const struct sr_render_job *job, draw_ray *draw, 
     return run(&e, draw_replicate);
 }
 
-struct estimate pixel_mean(const struct sr_render_job *job, uint32_t x, uint32_t y, double n_samples, const double xyz[3])
+struct estimate pixel_mean(const struct sr_render_job *job, uint32_t x, uint32_t y, double n_samples,
+                           const double xyz[3])
 {
     struct estimating e = {.job = job, .x = x, .y = y, .n = samples(n_samples), .xyz = xyz};
     return run(&e, pixel_replicate);
@@ -203,7 +218,8 @@ struct estimate scaled(struct estimate e, double factor)
     return (struct estimate){e.mean * factor, e.error * fabs(factor), e.degrees};
 }
 
-void check_irradiance(const struct row *row, const double p[3], const double n[3], const char *content, struct effort n_samples, double factor)
+void check_irradiance(const struct row *row, const double p[3], const double n[3], const char *content,
+                      struct effort n_samples, double factor)
 {
     static const struct {
         const char *how, *integrator;
@@ -220,8 +236,9 @@ void check_irradiance(const struct row *row, const double p[3], const double n[3
         struct world w = world_of("%s%s%s", ways[i].integrator, receiver_text(p, n), content);
         struct estimate e;
         if (i == 0) {
-            struct sr_irradiance E = sr_render_irradiance(&w.job, (sr_vec3){(float)p[0], (float)p[1], (float)p[2]},
-                                                          (sr_vec3){(float)n[0], (float)n[1], (float)n[2]}, samples(count[i]), REPLICATES);
+            struct sr_irradiance E =
+                sr_render_irradiance(&w.job, (sr_vec3){(float)p[0], (float)p[1], (float)p[2]},
+                                     (sr_vec3){(float)n[0], (float)n[1], (float)n[2]}, samples(count[i]), REPLICATES);
             e = (struct estimate){E.E_v, E.E_v_error, E.degrees};
         } else {
             e = scaled(pixel_mean(&w.job, 0, 0, count[i], (const double[]){0, 1, 0}), (double)SR_PI / RECEIVER_RHO);

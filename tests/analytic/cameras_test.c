@@ -14,15 +14,19 @@ static const struct effort both = {.path = 4096, .lights = 4096};
 static void pupil(const struct row *row)
 {
     char text[256];
-    snprintf(text, sizeof text, BLACK GLOW "ReverseOrientation Shape \"disk\" \"float height\" 1 \"float radius\" %.9g\n", row->b);
+    snprintf(text, sizeof text,
+             BLACK GLOW "ReverseOrientation Shape \"disk\" \"float height\" 1 \"float radius\" %.9g\n", row->b);
     check_irradiance(row, (const double[]){tan(row->a * DEGREE), 0, 0}, (const double[]){0, 0, 1}, text, both, 1);
 }
 /* The same with a true hole: a diaphragm before a bright sky; nothing but rays can find it. */
 static void hole(const struct row *row)
 {
-    struct world w = world_of("Integrator \"path\" \"integer maxdepth\" 0\nWorldBegin\nLightSource \"infinite\" \"float scale\" 1\n" BLACK
-                              "Shape \"disk\" \"float height\" 1 \"float innerradius\" %.9g \"float radius\" 1e5\n", row->b);
-    struct sr_irradiance E = sr_render_irradiance(&w.job, (sr_vec3){(float)tan(row->a * DEGREE), 0, 0}, (sr_vec3){0, 0, 1}, samples(131072), REPLICATES);
+    struct world w = world_of(
+        "Integrator \"path\" \"integer maxdepth\" 0\nWorldBegin\nLightSource \"infinite\" \"float scale\" 1\n" BLACK
+        "Shape \"disk\" \"float height\" 1 \"float innerradius\" %.9g \"float radius\" 1e5\n",
+        row->b);
+    struct sr_irradiance E = sr_render_irradiance(&w.job, (sr_vec3){(float)tan(row->a * DEGREE), 0, 0},
+                                                  (sr_vec3){0, 0, 1}, samples(131072), REPLICATES);
     check(row, "hole", (struct estimate){E.E_v, E.E_v_error, E.degrees}, 8 * GOAL);
     world_free(&w);
 }
@@ -34,21 +38,27 @@ static void pupil_and_hole(const struct row *row)
 static void pinhole_ratio(const struct row *row)
 {
     char text[256];
-    snprintf(text, sizeof text, BLACK GLOW "ReverseOrientation Shape \"disk\" \"float height\" 1 \"float radius\" %.9g\n", row->b);
-    check_irradiance(row, (const double[]){tan(row->a * DEGREE), 0, 0}, (const double[]){0, 0, 1}, text, both, 1 / ((double)SR_PI * row->b * row->b));
+    snprintf(text, sizeof text,
+             BLACK GLOW "ReverseOrientation Shape \"disk\" \"float height\" 1 \"float radius\" %.9g\n", row->b);
+    check_irradiance(row, (const double[]){tan(row->a * DEGREE), 0, 0}, (const double[]){0, 0, 1}, text, both,
+                     1 / ((double)SR_PI * row->b * row->b));
 }
 
-/* f/2 of 50 mm focused at 2 m, a small disk that glows at 4 m: its picture is a disk of the diameter c, whose second moment
- * is c^2 / 16 for each axis, widened by the picture of the disk itself, r^2 / 4, and by the pixel, step^2 / 12. */
+/* f/2 of 50 mm focused at 2 m, a small disk that glows at 4 m: its picture is a disk of the diameter c, whose second
+ * moment is c^2 / 16 for each axis, widened by the picture of the disk itself, r^2 / 4, and by the pixel, step^2 / 12.
+ */
 static void confusion(const struct row *row)
 {
     static const double object_m = 4, focus_m = 2, f_m = 0.05, D_m = 0.025, disk_m = 1e-3;
     enum { N = 40 };
-    double image_m = f_m * focus_m / (focus_m - f_m), fov = 2 * atan(0.4e-3 / 2 / image_m) / DEGREE; // the picture is 0.4 mm wide
-    struct world w = world_of("Integrator \"path\" \"integer maxdepth\" 0\n"
-                              "Camera \"perspective\" \"float fov\" %.12g \"float lensradius\" %.9g \"float focaldistance\" %.9g\n"
-                              "Film \"rgb\" \"integer xresolution\" %d \"integer yresolution\" %d\nPixelFilter \"box\"\nWorldBegin\n"
-                              "Translate 0 0 %.9g " BLACK GLOW_BOTH "Shape \"disk\" \"float radius\" %.9g\n", fov, D_m / 2, focus_m, N, N, object_m, disk_m);
+    double image_m = f_m * focus_m / (focus_m - f_m),
+           fov = 2 * atan(0.4e-3 / 2 / image_m) / DEGREE; // the picture is 0.4 mm wide
+    struct world w =
+        world_of("Integrator \"path\" \"integer maxdepth\" 0\n"
+                 "Camera \"perspective\" \"float fov\" %.12g \"float lensradius\" %.9g \"float focaldistance\" %.9g\n"
+                 "Film \"rgb\" \"integer xresolution\" %d \"integer yresolution\" %d\nPixelFilter \"box\"\nWorldBegin\n"
+                 "Translate 0 0 %.9g " BLACK GLOW_BOTH "Shape \"disk\" \"float radius\" %.9g\n",
+                 fov, D_m / 2, focus_m, N, N, object_m, disk_m);
     double own_mm2 = 1e6 * pow(disk_m * image_m / object_m, 2) / 4, step = 0.4 / N;
     struct sr_tally tally = {0};
     for (uint32_t r = 0; r < REPLICATES; ++r) {
@@ -79,18 +89,22 @@ static void confusion(const struct row *row)
 static void pixels(const struct row *row)
 {
     enum { W = 36, H = 24 };
-    struct world w = world_of("Camera \"perspective\" \"float fov\" %.12g\nFilm \"rgb\" \"integer xresolution\" %d \"integer yresolution\" %d\nWorldBegin\nShape \"sphere\"\n",
-                              2 * atan(12.0 / 50) / DEGREE, W, H);
+    struct world w = world_of(
+        "Camera \"perspective\" \"float fov\" %.12g\nFilm \"rgb\" \"integer xresolution\" %d \"integer yresolution\" %d\nWorldBegin\nShape \"sphere\"\n",
+        2 * atan(12.0 / 50) / DEGREE, W, H);
     double sum = 0;
     for (int y = 0; y < H; ++y)
         for (int x = 0; x < W; ++x) {
             sr_vec3 d[4];
             for (int k = 0; k < 4; ++k) {
                 struct sr_sensor_ray r;
-                EXPECT(w.job.sensor.model->ray(w.job.sensor.self, (sr_vec2){(float)(x + (k & 1)), (float)(y + (k >> 1))}, (sr_vec2){0.5f, 0.5f}, 0, &r));
+                EXPECT(w.job.sensor.model->ray(w.job.sensor.self,
+                                               (sr_vec2){(float)(x + (k & 1)), (float)(y + (k >> 1))},
+                                               (sr_vec2){0.5f, 0.5f}, 0, &r));
                 d[k] = r.ray.d;
             }
-            sum += fabs(sr_spherical_triangle_area(d[0], d[1], d[2])) + fabs(sr_spherical_triangle_area(d[2], d[1], d[3]));
+            sum +=
+                fabs(sr_spherical_triangle_area(d[0], d[1], d[2])) + fabs(sr_spherical_triangle_area(d[2], d[1], d[3]));
         }
     check(row, "rays", (struct estimate){sum, 0, 1}, GOAL);
     world_free(&w);

@@ -20,8 +20,10 @@ static const char *bumpy_mesh(void)
     for (int i = 0; i <= ROWS; ++i)
         for (int j = 0; j < COLUMNS; ++j) {
             double theta = (double)SR_PI * i / ROWS, phi = 2 * (double)SR_PI * j / COLUMNS;
-            double r = 1 + (i == 0 || i == ROWS ? 0 : 0.25 * sin(3 * theta) * cos(4 * phi)), s = i == 0 || i == ROWS ? 0 : sin(theta);
-            at += snprintf(text + at, sizeof text - (size_t)at, "%.9g %.9g %.9g ", r * s * cos(phi), r * s * sin(phi), r * cos(theta));
+            double r = 1 + (i == 0 || i == ROWS ? 0 : 0.25 * sin(3 * theta) * cos(4 * phi)),
+                   s = i == 0 || i == ROWS ? 0 : sin(theta);
+            at += snprintf(text + at, sizeof text - (size_t)at, "%.9g %.9g %.9g ", r * s * cos(phi), r * s * sin(phi),
+                           r * cos(theta));
         }
     at += snprintf(text + at, sizeof text - (size_t)at, "] \"integer indices\" [");
     for (int i = 0; i < ROWS; ++i)
@@ -47,23 +49,32 @@ static const char *shape_text(int i)
 
 static struct world furnace(const char *integrator, double rho, const char *shape)
 {
-    return world_of("Integrator %s\nWorldBegin\nMaterial \"diffuse\" \"spectrum reflectance\" [360 %.9g 830 %.9g]\n" GLOW_BOTH "%s", integrator, rho, rho, shape);
+    return world_of(
+        "Integrator %s\nWorldBegin\nMaterial \"diffuse\" \"spectrum reflectance\" [360 %.9g 830 %.9g]\n" GLOW_BOTH "%s",
+        integrator, rho, rho, shape);
 }
 
-/* a: reflectance, b: most bounces (0: all that matter). Without light sampling and roulette every path gives the answer. */
+/* a: reflectance, b: most bounces (0: all that matter). Without light sampling and roulette every path gives the
+ * answer. */
 static void closed(const struct row *row)
 {
     static const char *const names[] = {"cube", "sphere", "mesh"};
     double depth = row->b > 0 ? row->b : row->a > 0 ? ceil(log(1e-8) / log(row->a)) : 1;
     for (int shape = 0; shape < 3; ++shape)
         for (int way = 0; way < 3; ++way) {
-            // light sampling has chance in it, and the longer the paths the more: a wider goal, which more effort brings down
+            // light sampling has chance in it, and the longer the paths the more: a wider goal, which more effort
+            // brings down
             double n = way == 0 ? (row->a < 0.9 ? 64 : 8) : row->a < 0.9 ? 1024 : 64;
-            double goal = way == 0 ? (row->a < 0.9 ? GOAL : 4 * GOAL) : row->a < 0.2 ? 6 * GOAL : row->a < 0.6 ? 16 * GOAL : row->a < 0.9 ? 40 * GOAL : 240 * GOAL;
+            double goal = way == 0       ? (row->a < 0.9 ? GOAL : 4 * GOAL)
+                          : row->a < 0.2 ? 6 * GOAL
+                          : row->a < 0.6 ? 16 * GOAL
+                          : row->a < 0.9 ? 40 * GOAL
+                                         : 240 * GOAL;
             if (way && (row->a > 0.9 || row->b > 0) && shape != 1)
                 continue;
             char text[128], how[32];
-            static const char *const ways[] = {"\"simplepath\" \"integer maxdepth\" %.0f \"bool samplelights\" false", "\"path\" \"integer maxdepth\" %.0f",
+            static const char *const ways[] = {"\"simplepath\" \"integer maxdepth\" %.0f \"bool samplelights\" false",
+                                               "\"path\" \"integer maxdepth\" %.0f",
                                                "\"simplepath\" \"integer maxdepth\" %.0f"};
             snprintf(text, sizeof text, way == 0 ? ways[0] : way == 1 ? ways[1] : ways[2], depth);
             snprintf(how, sizeof how, "%s%s", names[shape], way == 0 ? "" : way == 1 ? "/path" : "/light");
@@ -77,7 +88,8 @@ static void closed(const struct row *row)
 static struct drawn at_wall(const void *context, sr_vec2 u, sr_vec2 v)
 {
     (void)context, (void)v;
-    double half_angle = 16.2602047083 * 3.14159265358979323846 / 180, z = -1 + (1 + cos(half_angle)) * (double)u.x * 0.999; // not the port, at +z
+    double half_angle = 16.2602047083 * 3.14159265358979323846 / 180,
+           z = -1 + (1 + cos(half_angle)) * (double)u.x * 0.999; // not the port, at +z
     double r = sqrt(1 - z * z), phi = 2 * (double)SR_PI * (double)u.y;
     sr_vec3 d = {(float)(r * cos(phi)), (float)(r * sin(phi)), (float)z};
     return (struct drawn){sr_scale(0.149f, d), d, 1};
@@ -86,9 +98,10 @@ static struct drawn at_wall(const void *context, sr_vec2 u, sr_vec2 v)
 static struct estimate sphere_radiance(double rho, double n)
 {
     double z = 0.15 * (1 - 2 * 0.02);
-    struct world w = world_of("Integrator \"path\" \"integer maxdepth\" 2000\nWorldBegin\nLightSource \"point\" \"float power\" 1\n"
-                              "Material \"diffuse\" \"spectrum reflectance\" [360 %.9g 830 %.9g] Shape \"sphere\" \"float radius\" 0.15 \"float zmax\" %.9g\n",
-                              rho, rho, z);
+    struct world w = world_of(
+        "Integrator \"path\" \"integer maxdepth\" 2000\nWorldBegin\nLightSource \"point\" \"float power\" 1\n"
+        "Material \"diffuse\" \"spectrum reflectance\" [360 %.9g 830 %.9g] Shape \"sphere\" \"float radius\" 0.15 \"float zmax\" %.9g\n",
+        rho, rho, z);
     struct estimate e = mean_luminance(&w.job, at_wall, NULL, n);
     world_free(&w);
     return e;
@@ -106,12 +119,17 @@ static void multiplier(const struct row *row)
 }
 static void amplification(const struct row *row)
 {
-    struct estimate L989 = sphere_radiance(0.989, 512); // the same random numbers: most of the chance cancels, which is not counted here
-    check(row, "path", (struct estimate){L989.mean / L990.mean, L989.mean / L990.mean * hypot(L989.error / L989.mean, L990.error / L990.mean), REPLICATES - 1},
+    struct estimate L989 =
+        sphere_radiance(0.989, 512); // the same random numbers: most of the chance cancels, which is not counted here
+    check(row, "path",
+          (struct estimate){L989.mean / L990.mean,
+                            L989.mean / L990.mean * hypot(L989.error / L989.mean, L990.error / L990.mean),
+                            REPLICATES - 1},
           100 * GOAL);
 }
 
-/* The unit cube whose ceiling gives off 1 and reflects nothing, floor and walls reflect 1/2: mean irradiance of a face. */
+/* The unit cube whose ceiling gives off 1 and reflects nothing, floor and walls reflect 1/2: mean irradiance of a face.
+ */
 struct face {
     int which; // 0 floor, 1 wall, 2 ceiling
 };
@@ -133,13 +151,16 @@ static void lambertian_cube(const struct row *row)
 {
     static const char *const ways[] = {"path", "simplepath"};
     for (int i = 0; i < 2; ++i) {
-        struct world w = world_of("Integrator \"%s\" \"integer maxdepth\" 28\nWorldBegin\n" GREY
-                                  "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0 0 0 1 1 0 1 0 1 1 1 1 1] "
-                                  "\"integer indices\" [0 1 2 3 0 1 4 5 2 3 6 7 0 2 4 6 1 3 5 7]\n" BLACK
-                                  "AreaLightSource \"diffuse\" \"float power\" 1 ReverseOrientation "
-                                  "Shape \"bilinearmesh\" \"point3 P\" [0 0 1 1 0 1 0 1 1 1 1 1]\n", ways[i]);
+        struct world w =
+            world_of("Integrator \"%s\" \"integer maxdepth\" 28\nWorldBegin\n" GREY
+                     "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0 0 0 1 1 0 1 0 1 1 1 1 1] "
+                     "\"integer indices\" [0 1 2 3 0 1 4 5 2 3 6 7 0 2 4 6 1 3 5 7]\n" BLACK
+                     "AreaLightSource \"diffuse\" \"float power\" 1 ReverseOrientation "
+                     "Shape \"bilinearmesh\" \"point3 P\" [0 0 1 1 0 1 0 1 1 1 1 1]\n",
+                     ways[i]);
         struct face face = {(int)row->a};
-        check(row, i ? "lights" : "path", mean_luminance(&w.job, at_face, &face, i ? 1024 : 8192), i ? 20 * GOAL : 10 * GOAL);
+        check(row, i ? "lights" : "path", mean_luminance(&w.job, at_face, &face, i ? 1024 : 8192),
+              i ? 20 * GOAL : 10 * GOAL);
         world_free(&w);
     }
 }
@@ -159,9 +180,15 @@ static struct drawn at_room(const void *context, sr_vec2 u, sr_vec2 v)
 
 static void room(const struct row *row)
 {
-    struct world w = world_of("Integrator \"path\" \"integer maxdepth\" 400\nWorldBegin\nLightSource \"point\" \"float power\" 10000\n"
-                              "Material \"diffuse\" \"spectrum reflectance\" [360 %.9g 830 %.9g]\nScale 2 2 2 %s", row->a, row->a, cube);
-    check(row, "path", mean_luminance(&w.job, at_room, &row->a, row->a < 0.8 ? 4096 : 1024), row->a < 0.2 ? 2 * GOAL : row->a < 0.4 ? 8 * GOAL : row->a < 0.8 ? 16 * GOAL : 40 * GOAL);
+    struct world w = world_of(
+        "Integrator \"path\" \"integer maxdepth\" 400\nWorldBegin\nLightSource \"point\" \"float power\" 10000\n"
+        "Material \"diffuse\" \"spectrum reflectance\" [360 %.9g 830 %.9g]\nScale 2 2 2 %s",
+        row->a, row->a, cube);
+    check(row, "path", mean_luminance(&w.job, at_room, &row->a, row->a < 0.8 ? 4096 : 1024),
+          row->a < 0.2   ? 2 * GOAL
+          : row->a < 0.4 ? 8 * GOAL
+          : row->a < 0.8 ? 16 * GOAL
+                         : 40 * GOAL);
     world_free(&w);
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Form factors: F = mean over the receiver of E / (pi L), once by light sampling at random points of it, once by rays that
- * leave it at random. */
+/* Form factors: F = mean over the receiver of E / (pi L), once by light sampling at random points of it, once by rays
+ * that leave it at random. */
 #include "analytic/analytic.h"
 
 typedef void point_on(sr_vec2 u, sr_vec3 *p, sr_vec3 *n);
@@ -22,15 +22,18 @@ static struct drawn draw(const void *context, sr_vec2 u, sr_vec2 v)
 }
 
 /* factor: from the mean of E / (pi L) to the value of the row */
-static struct estimate exchange(const struct row *row, point_on *point, const char *emitter, const char *receiver, double factor)
+static struct estimate exchange(const struct row *row, point_on *point, const char *emitter, const char *receiver,
+                                double factor)
 {
     struct estimate best = {0, INFINITY, REPLICATES - 1};
     for (int by_rays = 0; by_rays < 2; ++by_rays) {
         struct surface s = {point, by_rays};
         if (!by_rays && !receiver)
             continue;
-        struct world w = world_of("Integrator \"path\" \"integer maxdepth\" %d\nWorldBegin\n" BLACK "AttributeBegin\n" GLOW_BOTH
-                                  "%s\nAttributeEnd\nAttributeBegin\n" GREY "%s\nAttributeEnd\n", !by_rays, emitter, by_rays ? "" : receiver);
+        struct world w =
+            world_of("Integrator \"path\" \"integer maxdepth\" %d\nWorldBegin\n" BLACK "AttributeBegin\n" GLOW_BOTH
+                     "%s\nAttributeEnd\nAttributeBegin\n" GREY "%s\nAttributeEnd\n",
+                     !by_rays, emitter, by_rays ? "" : receiver);
         struct estimate e = scaled(mean_luminance(&w.job, draw, &s, by_rays ? 131072 : 4096), factor);
         check(row, by_rays ? "rays" : "path", e, by_rays ? 3 * GOAL : 12 * GOAL);
         if (e.error < best.error)
@@ -75,7 +78,8 @@ static void strip(sr_vec2 u, sr_vec3 *p, sr_vec3 *n)
 }
 
 #define PATCH "Shape \"bilinearmesh\" \"point3 P\" "
-static const char square_below[] = PATCH "[0 0 0 1 0 0 0 1 0 1 1 0]", square_above[] = PATCH "[0 0 1 1 0 1 0 1 1 1 1 1]",
+static const char square_below[] = PATCH "[0 0 0 1 0 0 0 1 0 1 1 0]",
+                  square_above[] = PATCH "[0 0 1 1 0 1 0 1 1 1 1 1]",
                   square_aside[] = PATCH "[0 0 0 1 0 0 0 0 1 1 0 1]";
 static struct estimate opposed_F, adjacent_F;
 
@@ -95,7 +99,10 @@ static void closure(const struct row *row)
 {
     if (opposed_F.degrees == 0 || adjacent_F.degrees == 0)
         return; // not measured this time
-    check(row, "C1 + 4 C3", (struct estimate){opposed_F.mean + 4 * adjacent_F.mean, hypot(opposed_F.error, 4 * adjacent_F.error), REPLICATES - 1}, 2 * GOAL);
+    check(row, "C1 + 4 C3",
+          (struct estimate){opposed_F.mean + 4 * adjacent_F.mean, hypot(opposed_F.error, 4 * adjacent_F.error),
+                            REPLICATES - 1},
+          2 * GOAL);
 }
 static void disks(const struct row *row)
 {
@@ -103,11 +110,13 @@ static void disks(const struct row *row)
 }
 static void sphere_to_disk(const struct row *row)
 {
-    exchange(row, disk_of_sphere, "Shape \"sphere\"", "Shape \"disk\" \"float height\" 2 \"float radius\" 1.5", 2.25 / 4);
+    exchange(row, disk_of_sphere, "Shape \"sphere\"", "Shape \"disk\" \"float height\" 2 \"float radius\" 1.5",
+             2.25 / 4);
 }
 static void spheres(const struct row *row)
 {
-    exchange(row, outer_sphere, "Shape \"sphere\" \"float radius\" 2\nAttributeEnd\nAttributeBegin\n" BLACK "Shape \"sphere\"", NULL, 1);
+    exchange(row, outer_sphere,
+             "Shape \"sphere\" \"float radius\" 2\nAttributeEnd\nAttributeBegin\n" BLACK "Shape \"sphere\"", NULL, 1);
 }
 static void strips(const struct row *row)
 {

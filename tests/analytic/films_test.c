@@ -8,7 +8,8 @@ static struct sr_image *picture(struct world *w, struct sr_film **film)
     struct sr_error error = {0};
     struct sr_image *image;
     w->job.spp = samples(w->job.spp);
-    if (sr_render(&w->job, film, &report, &error) != SR_OK || sr_render_image(*film, true, false, &image, &error) != SR_OK)
+    if (sr_render(&w->job, film, &report, &error) != SR_OK ||
+        sr_render_image(*film, true, false, &image, &error) != SR_OK)
         test_fail(__FILE__, __LINE__, "%s", error.text);
     return image;
 }
@@ -21,15 +22,18 @@ static double channel(const struct sr_image *image, const char *name, uint32_t x
     return (double)image->floats[sr_image_index(image, x, y) + (size_t)c];
 }
 
-/* A lamp of the spectrum 1 + (lambda - 500) / 400 in W m^-2 sr^-1 nm^-1, straight on: each bucket has its mean, whatever the
- * wavelengths' chance; through glass that disperses, too, where seven of eight wavelengths end on the way. */
+/* A lamp of the spectrum 1 + (lambda - 500) / 400 in W m^-2 sr^-1 nm^-1, straight on: each bucket has its mean,
+ * whatever the wavelengths' chance; through glass that disperses, too, where seven of eight wavelengths end on the way.
+ */
 static void buckets(bool is_dispersed)
 {
-    struct world w = world_of("Option \"string units\" \"si\"\nLookAt 0 0 -5  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 10\nIntegrator \"path\" \"integer maxdepth\" 20\n"
-                              "Sampler \"zsobol\" \"integer pixelsamples\" 4096\nPixelFilter \"box\"\n"
-                              "Film \"spectral\" \"integer xresolution\" 2 \"integer yresolution\" 2 \"integer nbuckets\" 5 \"float lambdamin\" 400 \"float lambdamax\" 700\nWorldBegin\n"
-                              "LightSource \"infinite\" \"spectrum L\" [360 0.65 830 1.825]\n%s",
-                              is_dispersed ? "Material \"dielectric\" \"spectrum eta\" \"glass-SF11\" Shape \"sphere\" \"float radius\" 2\n" : "");
+    struct world w = world_of(
+        "Option \"string units\" \"si\"\nLookAt 0 0 -5  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 10\nIntegrator \"path\" \"integer maxdepth\" 20\n"
+        "Sampler \"zsobol\" \"integer pixelsamples\" 4096\nPixelFilter \"box\"\n"
+        "Film \"spectral\" \"integer xresolution\" 2 \"integer yresolution\" 2 \"integer nbuckets\" 5 \"float lambdamin\" 400 \"float lambdamax\" 700\nWorldBegin\n"
+        "LightSource \"infinite\" \"spectrum L\" [360 0.65 830 1.825]\n%s",
+        is_dispersed ? "Material \"dielectric\" \"spectrum eta\" \"glass-SF11\" Shape \"sphere\" \"float radius\" 2\n"
+                     : "");
     struct sr_film *film;
     struct sr_image *image = picture(&w, &film);
     static const char *const names[] = {"S0.430,000nm", "S0.490,000nm", "S0.550,000nm", "S0.610,000nm", "S0.670,000nm"};
@@ -38,7 +42,10 @@ static void buckets(bool is_dispersed)
         for (uint32_t k = 0; k < 4; ++k)
             mean += channel(image, names[b], k & 1, k >> 1) / 4;
         printf("  %s %s %.6g, ours %.6g\n", is_dispersed ? "through glass" : "a lamp", names[b], expected, mean);
-        EXPECT_RELATIVE(mean, expected, is_slow_build() ? 0.5 : is_dispersed ? 1.5e-2 : 2e-3); // a clear ball in a furnace is not seen
+        EXPECT_RELATIVE(mean, expected,
+                        is_slow_build() ? 0.5
+                        : is_dispersed  ? 1.5e-2
+                                        : 2e-3); // a clear ball in a furnace is not seen
     }
     sr_image_free(image);
     sr_film_destroy(film);
@@ -56,9 +63,11 @@ TEST(spectral_films_have_the_same_colours)
 {
     double mean[2][3];
     for (int i = 0; i < 2; ++i) {
-        struct world w = world_of("LookAt 0 0 -5  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 30\nIntegrator \"path\"\nSampler \"zsobol\" \"integer pixelsamples\" 1024\n"
-                                  "Film \"%s\" \"integer xresolution\" 8 \"integer yresolution\" 8 \"float iso\" 200\nWorldBegin\nLightSource \"infinite\" \"blackbody L\" 4000\n"
-                                  "Material \"diffuse\" \"rgb reflectance\" [.8 .3 .2] Shape \"sphere\"\n", i ? "spectral" : "rgb");
+        struct world w = world_of(
+            "LookAt 0 0 -5  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 30\nIntegrator \"path\"\nSampler \"zsobol\" \"integer pixelsamples\" 1024\n"
+            "Film \"%s\" \"integer xresolution\" 8 \"integer yresolution\" 8 \"float iso\" 200\nWorldBegin\nLightSource \"infinite\" \"blackbody L\" 4000\n"
+            "Material \"diffuse\" \"rgb reflectance\" [.8 .3 .2] Shape \"sphere\"\n",
+            i ? "spectral" : "rgb");
         struct sr_film *film;
         struct sr_image *image = picture(&w, &film);
         for (int c = 0; c < 3; ++c) {
@@ -74,18 +83,22 @@ TEST(spectral_films_have_the_same_colours)
         EXPECT_RELATIVE(mean[1][c], mean[0][c], is_slow_build() ? 0.2 : 3e-3);
 }
 
-/* A plane 4 m before the camera that is turned by 30 degrees: its place, normal and slope in closed form, in both spaces. */
+/* A plane 4 m before the camera that is turned by 30 degrees: its place, normal and slope in closed form, in both
+ * spaces. */
 static void gbuffer(const char *space)
 {
     bool is_world = strcmp(space, "world") == 0;
-    struct world w = world_of("LookAt 1 2 3  1 2 10  0 1 0 Camera \"perspective\" \"float fov\" 2\nIntegrator \"path\" \"integer maxdepth\" 1\n"
-                              "Sampler \"zsobol\" \"integer pixelsamples\" 256\nPixelFilter \"box\"\n"
-                              "Film \"gbuffer\" \"integer xresolution\" 21 \"integer yresolution\" 21 \"string coordinatesystem\" \"%s\"\nWorldBegin\n"
-                              "LightSource \"infinite\" \"float scale\" 1\nMaterial \"diffuse\" \"spectrum reflectance\" [360 .4 830 .4]\n"
-                              "Translate 1 2 7 Rotate 30 0 1 0 Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]\n", space);
+    struct world w = world_of(
+        "LookAt 1 2 3  1 2 10  0 1 0 Camera \"perspective\" \"float fov\" 2\nIntegrator \"path\" \"integer maxdepth\" 1\n"
+        "Sampler \"zsobol\" \"integer pixelsamples\" 256\nPixelFilter \"box\"\n"
+        "Film \"gbuffer\" \"integer xresolution\" 21 \"integer yresolution\" 21 \"string coordinatesystem\" \"%s\"\nWorldBegin\n"
+        "LightSource \"infinite\" \"float scale\" 1\nMaterial \"diffuse\" \"spectrum reflectance\" [360 .4 830 .4]\n"
+        "Translate 1 2 7 Rotate 30 0 1 0 Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]\n",
+        space);
     struct sr_film *film;
     struct sr_image *image = picture(&w, &film);
-    double shift[3] = {is_world ? 1 : 0, is_world ? 2 : 0, is_world ? 3 : 0}, pixel = 2 * tan(3.14159265358979323846 / 180) / 21;
+    double shift[3] = {is_world ? 1 : 0, is_world ? 2 : 0, is_world ? 3 : 0},
+           pixel = 2 * tan(3.14159265358979323846 / 180) / 21;
     // z = 4 - tan(30 deg) x, as the plane turns its right side toward the camera; x = k z
     for (uint32_t x = 3; x < 21; x += 7) {
         double k = ((double)x - 10) * pixel, slope = -tan(30 * 3.14159265358979323846 / 180), z = 4 / (1 - slope * k);
@@ -115,11 +128,12 @@ TEST(gbuffers_hold_the_first_surface)
 /* A plane, half of which shines: a pixel across the border has samples of 0 and L, whose variance is L^2 p (1 - p). */
 TEST(variances_are_those_of_one_sample)
 {
-    struct world w = world_of("Translate 0 0 3 Camera \"orthographic\"\nIntegrator \"path\" \"integer maxdepth\" 0\nSampler \"independent\" \"integer pixelsamples\" 16384\nPixelFilter \"box\"\n"
-                              "Film \"gbuffer\" \"integer xresolution\" 1 \"integer yresolution\" 1\nWorldBegin\n"
-                              "Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-2 -2 0  2 -2 0  -2 2 0  2 2 0]\n"
-                              "AreaLightSource \"diffuse\" \"spectrum L\" \"stdillum-D65\" \"float scale\" 5 \"bool twosided\" true\n"
-                              "Shape \"bilinearmesh\" \"point3 P\" [-2 -2 -1  -.5 -2 -1  -2 2 -1  -.5 2 -1]\n");
+    struct world w = world_of(
+        "Translate 0 0 3 Camera \"orthographic\"\nIntegrator \"path\" \"integer maxdepth\" 0\nSampler \"independent\" \"integer pixelsamples\" 16384\nPixelFilter \"box\"\n"
+        "Film \"gbuffer\" \"integer xresolution\" 1 \"integer yresolution\" 1\nWorldBegin\n"
+        "Material \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [-2 -2 0  2 -2 0  -2 2 0  2 2 0]\n"
+        "AreaLightSource \"diffuse\" \"spectrum L\" \"stdillum-D65\" \"float scale\" 5 \"bool twosided\" true\n"
+        "Shape \"bilinearmesh\" \"point3 P\" [-2 -2 -1  -.5 -2 -1  -2 2 -1  -.5 2 -1]\n");
     struct sr_film *film;
     struct sr_image *image = picture(&w, &film);
     double mean = channel(image, "G", 0, 0), p = 0.25, L = mean / p, variance = channel(image, "Variance.G", 0, 0);
@@ -138,9 +152,10 @@ TEST(spectra_do_not_depend_on_threads)
 {
     double sum[4];
     for (int i = 0; i < 4; ++i) {
-        struct world w = world_of("LookAt 0 0 -5  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 30\nIntegrator \"path\"\nSampler \"zsobol\" \"integer pixelsamples\" 64\n"
-                                  "Film \"spectral\" \"integer xresolution\" 20 \"integer yresolution\" 20 \"integer nbuckets\" 3\nWorldBegin\n"
-                                  "LightSource \"infinite\" \"blackbody L\" 4000\nMaterial \"diffuse\" Shape \"sphere\"\n");
+        struct world w = world_of(
+            "LookAt 0 0 -5  0 0 0  0 1 0 Camera \"perspective\" \"float fov\" 30\nIntegrator \"path\"\nSampler \"zsobol\" \"integer pixelsamples\" 64\n"
+            "Film \"spectral\" \"integer xresolution\" 20 \"integer yresolution\" 20 \"integer nbuckets\" 3\nWorldBegin\n"
+            "LightSource \"infinite\" \"blackbody L\" 4000\nMaterial \"diffuse\" Shape \"sphere\"\n");
         w.job.threads = i + 1;
         w.job.tile = i == 1 ? 7 : 16;
         w.job.adaptive.is_on = i == 3;
@@ -159,8 +174,8 @@ TEST(spectra_do_not_depend_on_threads)
     EXPECT_RELATIVE(sum[3], sum[0], 1e-2);
 }
 
-/* What cameras make of a perfect white, under their own white balance and others, and of a chart's worth of colours. Least squares
- * leave a few per cent; the luminance of white is nearly right, and daylight is white. */
+/* What cameras make of a perfect white, under their own white balance and others, and of a chart's worth of colours.
+ * Least squares leave a few per cent; the luminance of white is nearly right, and daylight is white. */
 TEST(cameras_see_white_as_white)
 {
     int n = 0;
@@ -173,9 +188,11 @@ TEST(cameras_see_white_as_white)
                 for (int j = 0; j < 3; ++j)
                     EXPECT(isfinite(m[i][j]) && fabs(m[i][j]) < 10);
         }
-        struct world w = world_of("LookAt 0 0 -5  0 0 0  0 1 0 Camera \"perspective\" \"float shutterclose\" 0.5\nIntegrator \"path\"\n"
-                                  "Sampler \"zsobol\" \"integer pixelsamples\" 1024\nFilm \"rgb\" \"integer xresolution\" 2 \"integer yresolution\" 2 \"float iso\" 200\n"
-                                  "\"string sensor\" \"%s\"\nWorldBegin\nLightSource \"infinite\" \"spectrum L\" \"stdillum-D65\"\n", sr_film_camera_name(n));
+        struct world w = world_of(
+            "LookAt 0 0 -5  0 0 0  0 1 0 Camera \"perspective\" \"float shutterclose\" 0.5\nIntegrator \"path\"\n"
+            "Sampler \"zsobol\" \"integer pixelsamples\" 1024\nFilm \"rgb\" \"integer xresolution\" 2 \"integer yresolution\" 2 \"float iso\" 200\n"
+            "\"string sensor\" \"%s\"\nWorldBegin\nLightSource \"infinite\" \"spectrum L\" \"stdillum-D65\"\n",
+            sr_film_camera_name(n));
         struct sr_film *film;
         struct sr_image *image = picture(&w, &film);
         double rgb[3] = {channel(image, "R", 0, 0), channel(image, "G", 0, 0), channel(image, "B", 0, 0)};
@@ -206,7 +223,8 @@ TEST(sensors_integrate_their_curves)
             sum[c] += (double)v[c] / N;
     }
     // the Canon EOS 100D at 520 and 530 nm, in the table's linear piece
-    static const double expected[3] = {10 * (0.10054 + 0.09959) / 2, 10 * (1.0 + 0.83768) / 2, 10 * (0.26207 + 0.14686) / 2};
+    static const double expected[3] = {10 * (0.10054 + 0.09959) / 2, 10 * (1.0 + 0.83768) / 2,
+                                       10 * (0.26207 + 0.14686) / 2};
     for (int c = 0; c < 3; ++c)
         EXPECT_RELATIVE(sum[c], expected[c], 2e-3);
 }

@@ -1,23 +1,30 @@
 /* SPDX-License-Identifier: MIT */
-/* Paths that learn, where light comes from or what it brings to go on: against path tracing and closed forms, whatever has been learned; the
- * same bytes for any threads; off where it does not pay. |z| < 4.9 for the difference of the seeds' means. */
+/* Paths that learn, where light comes from or what it brings to go on: against path tracing and closed forms, whatever
+ * has been learned; the same bytes for any threads; off where it does not pay. |z| < 4.9 for the difference of the
+ * seeds' means. */
 #include "analytic/analytic.h"
 
-#define SMALL(estimator, depth) \
-    "Film \"rgb\" \"integer xresolution\" 12 \"integer yresolution\" 8 PixelFilter \"box\"\nIntegrator \"" estimator "\" \"integer maxdepth\" " depth "\n"
+#define SMALL(estimator, depth)                                                                                        \
+    "Film \"rgb\" \"integer xresolution\" 12 \"integer yresolution\" 8 PixelFilter \"box\"\nIntegrator \"" estimator   \
+    "\" \"integer maxdepth\" " depth "\n"
 #define QUAD(a, b, c, d) "Shape \"bilinearmesh\" \"point3 P\" [" a " " b " " c " " d "]\n"
 #define LOOK_ASIDE "LookAt -.8 .2 -.8  .3 -.5 .3  0 1 0 Camera \"perspective\" \"float fov\" 80\n"
 /* A box of 2 m about the origin, of six squares. */
-#define BOX                                                                                                                                                \
-    QUAD("-1 -1 -1", "-1 -1 1", "1 -1 -1", "1 -1 1") QUAD("-1 1 -1", "1 1 -1", "-1 1 1", "1 1 1") QUAD("-1 -1 -1", "1 -1 -1", "-1 1 -1", "1 1 -1")         \
-    QUAD("-1 -1 1", "-1 1 1", "1 -1 1", "1 1 1") QUAD("-1 -1 -1", "-1 1 -1", "-1 -1 1", "-1 1 1") QUAD("1 -1 -1", "1 -1 1", "1 1 -1", "1 1 1")
-/* The box lit by a spot of its ceiling alone, which a lamp in a black tube throws there; a glossy ball, a coated one and a glass one. */
-#define LAMP_IN_A_TUBE                                                                                                                                     \
-    LOOK_ASIDE "WorldBegin\n" GREY BOX                                                    \
+#define BOX                                                                                                            \
+    QUAD("-1 -1 -1", "-1 -1 1", "1 -1 -1", "1 -1 1")                                                                   \
+    QUAD("-1 1 -1", "1 1 -1", "-1 1 1", "1 1 1")                                                                       \
+    QUAD("-1 -1 -1", "1 -1 -1", "-1 1 -1", "1 1 -1")                                                                   \
+    QUAD("-1 -1 1", "-1 1 1", "1 -1 1", "1 1 1") QUAD("-1 -1 -1", "-1 1 -1", "-1 -1 1", "-1 1 1")                      \
+        QUAD("1 -1 -1", "1 -1 1", "1 1 -1", "1 1 1")
+/* The box lit by a spot of its ceiling alone, which a lamp in a black tube throws there; a glossy ball, a coated one
+ * and a glass one. */
+#define LAMP_IN_A_TUBE                                                                                                                                                                   \
+    LOOK_ASIDE                                                                                                                                                                           \
+    "WorldBegin\n" GREY BOX                                                                                                                                                              \
     "AttributeBegin Translate .5 .2 .5 Rotate -90 1 0 0 Material \"diffuse\" \"rgb reflectance\" [0 0 0] Shape \"cylinder\" \"float radius\" .1 \"float zmin\" -.02 \"float zmax\" .3\n" \
-    "AreaLightSource \"diffuse\" \"float scale\" 300 Shape \"disk\" \"float radius\" .08 AttributeEnd\n"                                                    \
-    "AttributeBegin Material \"conductor\" \"float roughness\" .3 Translate -.2 -.7 .5 Shape \"sphere\" \"float radius\" .3 AttributeEnd\n"                   \
-    "AttributeBegin Material \"coateddiffuse\" \"float roughness\" .2 Translate .4 -.7 -.3 Shape \"sphere\" \"float radius\" .3 AttributeEnd\n"               \
+    "AreaLightSource \"diffuse\" \"float scale\" 300 Shape \"disk\" \"float radius\" .08 AttributeEnd\n"                                                                                 \
+    "AttributeBegin Material \"conductor\" \"float roughness\" .3 Translate -.2 -.7 .5 Shape \"sphere\" \"float radius\" .3 AttributeEnd\n"                                              \
+    "AttributeBegin Material \"coateddiffuse\" \"float roughness\" .2 Translate .4 -.7 -.3 Shape \"sphere\" \"float radius\" .3 AttributeEnd\n"                                          \
     "AttributeBegin Material \"dielectric\" Translate .1 .2 .2 Shape \"sphere\" \"float radius\" .1 AttributeEnd\n"
 
 static struct sr_film *film_of(const struct sr_render_job *job, struct sr_render_report *report)
@@ -79,13 +86,15 @@ TEST(guided_paths_find_the_light_of_plain_paths)
     world_free(&w);
 }
 
-/* Walls that shine a little, and the spot of the lamp in its tube: both ways to the walls' light and the way to the spot, which is guided, weigh
- * much. From the lights' end all of it is found without any of this. */
+/* Walls that shine a little, and the spot of the lamp in its tube: both ways to the walls' light and the way to the
+ * spot, which is guided, weigh much. From the lights' end all of it is found without any of this. */
 TEST(guided_paths_find_what_light_paths_find)
 {
-    struct world w = world_of(LOOK_ASIDE SMALL("lightpath", "2") "WorldBegin\n" GLOW_BOTH GREY BOX
-                              "AttributeBegin Translate .5 .2 .5 Rotate -90 1 0 0 Material \"diffuse\" \"rgb reflectance\" [0 0 0] Shape \"cylinder\" \"float radius\" .1 \"float zmin\" -.02 \"float zmax\" .3\n"
-                              "AreaLightSource \"diffuse\" \"float scale\" 30000 Shape \"disk\" \"float radius\" .08 AttributeEnd\n");
+    struct world w = world_of(LOOK_ASIDE SMALL(
+        "lightpath",
+        "2") "WorldBegin\n" GLOW_BOTH GREY BOX
+             "AttributeBegin Translate .5 .2 .5 Rotate -90 1 0 0 Material \"diffuse\" \"rgb reflectance\" [0 0 0] Shape \"cylinder\" \"float radius\" .1 \"float zmin\" -.02 \"float zmax\" .3\n"
+             "AreaLightSource \"diffuse\" \"float scale\" 30000 Shape \"disk\" \"float radius\" .08 AttributeEnd\n");
     struct sr_arena arena = {0};
     struct world g = guided(w, "guidedpath,guiding=on,pilot=1", &arena);
     uint32_t spp = is_slow_build() ? 8 : 256, seeds = is_slow_build() ? 4 : 12;
@@ -101,7 +110,8 @@ TEST(guided_paths_find_what_light_paths_find)
 /* In a closed room whose walls shine and reflect, L = Le / (1 - rho) in all places and directions. */
 TEST(guided_paths_keep_the_light_of_a_furnace)
 {
-    struct world w = world_of("LookAt 0 0 0  1 .3 .2  0 1 0 Camera \"perspective\" \"float fov\" 90\n" SMALL("path", "60") "WorldBegin\n" GLOW_BOTH GREY BOX);
+    struct world w = world_of("LookAt 0 0 0  1 .3 .2  0 1 0 Camera \"perspective\" \"float fov\" 90\n" SMALL(
+        "path", "60") "WorldBegin\n" GLOW_BOTH GREY BOX);
     struct sr_arena arena = {0};
     struct world g = guided(w, "guidedpath,guiding=on,pilot=2", &arena);
     struct estimate e = mean_of_seeds(&g, is_slow_build() ? 8 : 64, 8);
@@ -137,8 +147,10 @@ TEST(guided_paths_do_not_depend_on_threads_or_tiles)
 TEST(guiding_switches_itself_off_where_it_does_not_pay)
 {
     // a lamp that all of the box sees
-    struct world w = world_of(LOOK_ASIDE SMALL("path", "6") "WorldBegin\n" GREY BOX
-                              "AttributeBegin AreaLightSource \"diffuse\" \"float scale\" 20 Translate 0 .99 0 Rotate 90 1 0 0 Shape \"disk\" \"float radius\" .3 AttributeEnd\n");
+    struct world w = world_of(LOOK_ASIDE SMALL(
+        "path",
+        "6") "WorldBegin\n" GREY BOX
+             "AttributeBegin AreaLightSource \"diffuse\" \"float scale\" 20 Translate 0 .99 0 Rotate 90 1 0 0 Shape \"disk\" \"float radius\" .3 AttributeEnd\n");
     struct sr_arena arena = {0};
     struct world g = guided(w, "guidedpath,pilot=6", &arena);
     struct sr_render_report report;
@@ -187,14 +199,18 @@ TEST(pictures_with_few_samples_are_not_guided)
 
 /* ---- roulette by what has been learned ---- */
 
-#define LAMP "AttributeBegin AreaLightSource \"diffuse\" \"float scale\" 20 Translate 0 .99 0 Rotate 90 1 0 0 Shape \"disk\" \"float radius\" .2 AttributeEnd\n"
+#define LAMP                                                                                                           \
+    "AttributeBegin AreaLightSource \"diffuse\" \"float scale\" 20 Translate 0 .99 0 Rotate 90 1 0 0 Shape \"disk\" \"float radius\" .2 AttributeEnd\n"
 #define WHITE "Material \"diffuse\" \"rgb reflectance\" [.9 .9 .9]\n"
 /* A white room with a lamp and a ball of glass. */
-#define WHITE_ROOM LOOK_ASIDE "WorldBegin\n" WHITE BOX LAMP \
+#define WHITE_ROOM                                                                                                     \
+    LOOK_ASIDE                                                                                                         \
+    "WorldBegin\n" WHITE BOX LAMP                                                                                      \
     "AttributeBegin Material \"dielectric\" Translate .2 -.7 .3 Shape \"sphere\" \"float radius\" .3 AttributeEnd\n"
 /* A grey one whose floor is nearly black: what it sends on carries little and is all that one sees there. */
-#define DARK_FLOOR LOOK_ASIDE "WorldBegin\n" GREY BOX LAMP \
-    "Material \"diffuse\" \"rgb reflectance\" [.03 .05 .04]\n" QUAD("-1 -.9 -1", "-1 -.9 1", "1 -.9 -1", "1 -.9 1")
+#define DARK_FLOOR                                                                                                     \
+    LOOK_ASIDE "WorldBegin\n" GREY BOX LAMP "Material \"diffuse\" \"rgb reflectance\" [.03 .05 .04]\n" QUAD(           \
+        "-1 -.9 -1", "-1 -.9 1", "1 -.9 -1", "1 -.9 1")
 
 static void expect_light_of_plain_paths(const char *name, const char *scene, uint32_t spp)
 {
@@ -205,7 +221,8 @@ static void expect_light_of_plain_paths(const char *name, const char *scene, uin
     struct world g = guided(w, "roulettepath,learned=on,pilot=0.01", &arena);
     struct estimate a = mean_of_seeds(&w, 2 * spp, seeds), b = mean_of_seeds(&g, spp, seeds);
     double z = z_of((struct estimate){b.mean - a.mean, sqrt(a.error * a.error + b.error * b.error), a.degrees}, 0);
-    printf("  %s: paths %.5g +- %.2g, by lots that have been learned %.5g +- %.2g, z %.2f\n", name, a.mean, a.error, b.mean, b.error, z);
+    printf("  %s: paths %.5g +- %.2g, by lots that have been learned %.5g +- %.2g, z %.2f\n", name, a.mean, a.error,
+           b.mean, b.error, z);
     EXPECT(fabs(z) < 4.9);
     EXPECT(is_slow_build() || b.error < 0.03 * b.mean);
     sr_arena_free(&arena);
@@ -223,7 +240,8 @@ TEST(learned_roulette_finds_the_light_of_plain_paths)
 
 TEST(learned_roulette_keeps_the_light_of_a_furnace)
 {
-    struct world w = world_of("LookAt 0 0 0  1 .3 .2  0 1 0 Camera \"perspective\" \"float fov\" 90\n" SMALL("path", "60") "WorldBegin\n" GLOW_BOTH GREY BOX);
+    struct world w = world_of("LookAt 0 0 0  1 .3 .2  0 1 0 Camera \"perspective\" \"float fov\" 90\n" SMALL(
+        "path", "60") "WorldBegin\n" GLOW_BOTH GREY BOX);
     struct sr_arena arena = {0};
     struct world g = guided(w, "roulettepath,learned=on,pilot=2", &arena);
     struct estimate e = mean_of_seeds(&g, is_slow_build() ? 8 : 64, 8);

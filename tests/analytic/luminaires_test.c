@@ -33,11 +33,15 @@ TEST(hundred_lumens_give_31_83_lux_from_a_lambertian_lamp_and_7_96_from_an_isotr
                        "ReverseOrientation Shape \"disk\" \"float radius\" 0.001\nAttributeEnd";
     const char *lights[] = {
         disk,
-        sr_arena_printf(&arena, "LightSource \"ies\" \"string filename\" \"%s\"", file_of(&arena, lambertian, "lambert.ies")),
-        sr_arena_printf(&arena, "LightSource \"ies\" \"string filename\" \"%s\" \"float power\" 100", file_of(&arena, lambertian, "lambert.ldt")),
+        sr_arena_printf(&arena, "LightSource \"ies\" \"string filename\" \"%s\"",
+                        file_of(&arena, lambertian, "lambert.ies")),
+        sr_arena_printf(&arena, "LightSource \"ies\" \"string filename\" \"%s\" \"float power\" 100",
+                        file_of(&arena, lambertian, "lambert.ldt")),
         "LightSource \"point\" \"float power\" 100",
-        sr_arena_printf(&arena, "LightSource \"ies\" \"string filename\" \"%s\"", file_of(&arena, isotropic, "even.ies")),
-        sr_arena_printf(&arena, "LightSource \"ies\" \"string filename\" \"%s\" \"blackbody I\" 3000", file_of(&arena, isotropic, "even.ldt")),
+        sr_arena_printf(&arena, "LightSource \"ies\" \"string filename\" \"%s\"",
+                        file_of(&arena, isotropic, "even.ies")),
+        sr_arena_printf(&arena, "LightSource \"ies\" \"string filename\" \"%s\" \"blackbody I\" 3000",
+                        file_of(&arena, isotropic, "even.ldt")),
     };
     for (int i = 0; i < 6; ++i) {
         bool is_lambert = i < 3;

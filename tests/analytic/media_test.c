@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* Participating media whose light is known: absorbers, single scattering, half-spaces and slabs with all orders of scattering,
- * the infinite medium, glowing spheres; and two laws that hold whatever the medium: the furnace, and the mean length of paths.
+/* Participating media whose light is known: absorbers, single scattering, half-spaces and slabs with all orders of
+ * scattering, the infinite medium, glowing spheres; and two laws that hold whatever the medium: the furnace, and the
+ * mean length of paths.
  *
  * What depends on single-scattering albedo alone is measured in a medium of another density at each wavelength, too. */
 #include "analytic/analytic.h"
@@ -18,12 +19,16 @@ static const struct matter grey = {.red = 1, .violet = 1}, coloured = {.red = 0.
 static const char *medium_text(struct matter m)
 {
     static char text[512];
-    snprintf(text, sizeof text, "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"spectrum sigma_a\" [360 %.9g 830 %.9g] \"spectrum sigma_s\" [360 %.9g 830 %.9g]\n",
-             (1 - m.albedo) * m.violet, (1 - m.albedo) * m.red, m.albedo * m.violet, m.albedo * m.red);
+    snprintf(
+        text, sizeof text,
+        "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"spectrum sigma_a\" [360 %.9g 830 %.9g] \"spectrum sigma_s\" [360 %.9g 830 %.9g]\n",
+        (1 - m.albedo) * m.violet, (1 - m.albedo) * m.red, m.albedo * m.violet, m.albedo * m.red);
     return text;
 }
 
-#define PLANE(z) "Shape \"trianglemesh\" \"point3 P\" [-4000 -4000 " z " 4000 -4000 " z " 4000 4000 " z " -4000 4000 " z "] \"integer indices\" [0 1 2 0 2 3]\n"
+#define PLANE(z)                                                                                                       \
+    "Shape \"trianglemesh\" \"point3 P\" [-4000 -4000 " z " 4000 -4000 " z " 4000 4000 " z " -4000 4000 " z            \
+    "] \"integer indices\" [0 1 2 0 2 3]\n"
 #define SURFACE "Material \"interface\" MediumInterface \"m\" \"\" " PLANE("0")
 #define BOTTOM "Material \"interface\" MediumInterface \"\" \"m\" " PLANE("-1")
 #define SKY "LightSource \"infinite\" \"float scale\" 1\n"
@@ -32,13 +37,16 @@ static const char *medium_text(struct matter m)
 static const char *sun_text(double mu)
 {
     static char text[256];
-    snprintf(text, sizeof text, "LightSource \"distant\" \"float illuminance\" 1 \"point3 from\" [%.9g 0 %.9g] \"point3 to\" [0 0 0]\n", sqrt(1 - mu * mu), mu);
+    snprintf(text, sizeof text,
+             "LightSource \"distant\" \"float illuminance\" 1 \"point3 from\" [%.9g 0 %.9g] \"point3 to\" [0 0 0]\n",
+             sqrt(1 - mu * mu), mu);
     return text;
 }
 
 static struct world scene_of(const char *integrator, int depth, struct matter m, const char *content)
 {
-    return world_of("Integrator \"%s\" \"integer maxdepth\" %d\nWorldBegin\n%s%s", integrator, depth, medium_text(m), content);
+    return world_of("Integrator \"%s\" \"integer maxdepth\" %d\nWorldBegin\n%s%s", integrator, depth, medium_text(m),
+                    content);
 }
 
 /* One ray, seen under mu from z = 1, or from z = -2 looking up (mu < 0); or diffusely where mu is 0. */
@@ -68,7 +76,8 @@ static struct estimate seen(struct world *w, double mu, bool is_below, double n)
 /* Reads the scene's meter. */
 static struct estimate metered(struct world *w, double n)
 {
-    struct sr_measure_settings s = {.samples = (uint64_t)samples(n) * REPLICATES, .replicates = REPLICATES, .system = SR_PHOTOPIC};
+    struct sr_measure_settings s = {
+        .samples = (uint64_t)samples(n) * REPLICATES, .replicates = REPLICATES, .system = SR_PHOTOPIC};
     struct sr_arena arena = {0};
     struct sr_measurement m;
     struct sr_error error = {0};
@@ -87,18 +96,21 @@ static struct estimate metered(struct world *w, double n)
 /* A lamp behind 2.5 m of fog of 0.7 / m, in which the camera stands, too; and through a box of it. */
 static void transmittance(const struct row *row)
 {
-    static const char *const fog = "Film \"rgb\" \"integer xresolution\" 1 \"integer yresolution\" 1\nMediumInterface \"\" \"m\"\nLookAt 0 0 0 0 0 1 0 1 0 "
-                                   "Camera \"perspective\" \"float fov\" 0.01\n";
+    static const char *const fog =
+        "Film \"rgb\" \"integer xresolution\" 1 \"integer yresolution\" 1\nMediumInterface \"\" \"m\"\nLookAt 0 0 0 0 0 1 0 1 0 "
+        "Camera \"perspective\" \"float fov\" 0.01\n";
     static const char *const ways[] = {"absorber", "scatterer", "twin", "box"};
     for (int i = 0; i < 4; ++i) {
         struct matter m = {i == 1 ? 0.8 : i == 2 ? 0.5 : 0, i == 3 ? 1.75 : 0.7, i == 3 ? 1.75 : 0.7};
         struct world w;
         if (i < 3)
-            w = world_of("%s%sIntegrator \"%s\" \"integer maxdepth\" 0\nWorldBegin\n" LAMP "Translate 0 0 2.5 Shape \"disk\"\n", medium_text(m), fog,
-                         i == 2 ? "simplevolpath" : "volpath");
+            w = world_of("%s%sIntegrator \"%s\" \"integer maxdepth\" 0\nWorldBegin\n" LAMP
+                         "Translate 0 0 2.5 Shape \"disk\"\n",
+                         medium_text(m), fog, i == 2 ? "simplevolpath" : "volpath");
         else
             w = scene_of("volpath", 0, m, SURFACE BOTTOM "MediumInterface \"\" \"\" " LAMP PLANE("-2.5"));
-        struct estimate e = i < 3 ? pixel_mean(&w.job, 0, 0, i ? 2048 : 1024, (const double[]){0, 1, 0}) : seen(&w, 1, false, 1024);
+        struct estimate e =
+            i < 3 ? pixel_mean(&w.job, 0, 0, i ? 2048 : 1024, (const double[]){0, 1, 0}) : seen(&w, 1, false, 1024);
         if (i < 3)
             world_free(&w);
         check(row, ways[i], e, i == 1 ? 1e-3 : i == 2 ? 3e-2 : GOAL);
@@ -107,11 +119,13 @@ static void transmittance(const struct row *row)
 
 static void point_in_absorber(const struct row *row)
 {
-    static const char *const around[] = {"", "Material \"interface\" MediumInterface \"m\" \"\" Shape \"sphere\" \"float radius\" 5\n"};
+    static const char *const around[] = {
+        "", "Material \"interface\" MediumInterface \"m\" \"\" Shape \"sphere\" \"float radius\" 5\n"};
     for (int i = 0; i < 2; ++i) {
-        struct world w = world_of("%s%s\nCamera \"perspective\"\nIntegrator \"volpath\"\nWorldBegin\nLightSource \"point\" \"float power\" 125.663706144\n%s"
-                                  "#@ Meter \"irradiance\" \"string name\" \"E\" \"point3 p\" [0 0 2] \"normal n\" [0 0 -1]\n",
-                                  medium_text((struct matter){0, 0.3, 0.3}), i ? "" : "MediumInterface \"m\"", around[i]);
+        struct world w = world_of(
+            "%s%s\nCamera \"perspective\"\nIntegrator \"volpath\"\nWorldBegin\nLightSource \"point\" \"float power\" 125.663706144\n%s"
+            "#@ Meter \"irradiance\" \"string name\" \"E\" \"point3 p\" [0 0 2] \"normal n\" [0 0 -1]\n",
+            medium_text((struct matter){0, 0.3, 0.3}), i ? "" : "MediumInterface \"m\"", around[i]);
         check(row, i ? "ball" : "fog", metered(&w, 1024), GOAL);
     }
 }
@@ -149,7 +163,8 @@ static void half_space(const struct row *row)
 {
     static const char *const ways[] = {"grey", "coloured", "twin"};
     for (int i = 0; i < (row->b > 0 || row->a > 0.9 ? 2 : 3); ++i) {
-        struct world w = scene_of(i == 2 ? "simplevolpath" : "volpath", 100000, of_albedo(i == 1 ? coloured : grey, row->a), SURFACE SKY);
+        struct world w = scene_of(i == 2 ? "simplevolpath" : "volpath", 100000,
+                                  of_albedo(i == 1 ? coloured : grey, row->a), SURFACE SKY);
         check(row, ways[i], seen(&w, row->b, false, 1024), i == 2 ? 3e-2 : 1.6e-2);
     }
 }
@@ -159,7 +174,8 @@ static void slab(const struct row *row)
 {
     static const char *const ways[] = {"volpath", "twin"};
     for (int i = 0; i < (row->b > 0 ? 1 : 2); ++i) {
-        struct world w = scene_of(i ? "simplevolpath" : "volpath", 100000, of_albedo(grey, fabs(row->a)), SURFACE BOTTOM FLOOR SKY);
+        struct world w =
+            scene_of(i ? "simplevolpath" : "volpath", 100000, of_albedo(grey, fabs(row->a)), SURFACE BOTTOM FLOOR SKY);
         check(row, ways[i], seen(&w, row->b, row->a < 0, 1024), 1.2e-2);
     }
 }
@@ -168,15 +184,18 @@ static void absorbing_slab(const struct row *row)
 {
     struct world w = scene_of("volpath", 1, grey, SURFACE BOTTOM FLOOR SKY);
     check(row, "rays", seen(&w, 0, true, 1024), GOAL);
-    w = scene_of("volpath", 1, grey, SURFACE BOTTOM FLOOR SKY "#@ Meter \"irradiance\" \"string name\" \"E\" \"point3 p\" [0 0 -2] \"normal n\" [0 0 1]\n");
+    w = scene_of("volpath", 1, grey,
+                 SURFACE BOTTOM FLOOR SKY
+                 "#@ Meter \"irradiance\" \"string name\" \"E\" \"point3 p\" [0 0 -2] \"normal n\" [0 0 1]\n");
     check(row, "meter", scaled(metered(&w, 1024), 1 / pi), GOAL);
 }
 
 static void point_in_infinite_medium(const struct row *row)
 {
-    struct world w = world_of("%sMediumInterface \"m\"\nCamera \"perspective\"\nIntegrator \"volpath\" \"integer maxdepth\" 100000\nWorldBegin\n"
-                              "LightSource \"point\" \"float power\" 1\n#@ Meter \"fluence\" \"string name\" \"E\" \"point3 p\" [0 0 1]\n",
-                              medium_text((struct matter){0.9, 1, 1}));
+    struct world w = world_of(
+        "%sMediumInterface \"m\"\nCamera \"perspective\"\nIntegrator \"volpath\" \"integer maxdepth\" 100000\nWorldBegin\n"
+        "LightSource \"point\" \"float power\" 1\n#@ Meter \"fluence\" \"string name\" \"E\" \"point3 p\" [0 0 1]\n",
+        medium_text((struct matter){0.9, 1, 1}));
     check(row, "meter", metered(&w, 2048), 5e-2); // near the source, light falls off as 1/r^2: the tail is heavy
 }
 
@@ -202,12 +221,14 @@ static const char unit_cube[] =
     "Shape \"bilinearmesh\" \"point3 P\" [-.5 -.5 -.5 .5 -.5 -.5 -.5 .5 -.5 .5 .5 -.5 -.5 -.5 .5 .5 -.5 .5 -.5 .5 .5 .5 .5 .5] "
     "\"integer indices\" [2 3 0 1 4 5 6 7 0 1 4 5 6 7 2 3 4 6 0 2 1 3 5 7]\n";
 
-static struct estimate glow_of(bool is_cube, double sigma_a, double sigma_s, double Le, const char *integrator, double n)
+static struct estimate glow_of(bool is_cube, double sigma_a, double sigma_s, double Le, const char *integrator,
+                               double n)
 {
-    struct world w = world_of("Integrator \"%s\" \"integer maxdepth\" 1000000\nWorldBegin\nMakeNamedMedium \"m\" \"string type\" \"homogeneous\" "
-                              "\"spectrum sigma_a\" [300 %.9g 900 %.9g] \"spectrum sigma_s\" [300 %.9g 900 %.9g] \"spectrum Le\" [300 1 900 1] \"float Lescale\" %.9g\n"
-                              "Material \"interface\" MediumInterface \"m\" \"\" %s",
-                              integrator, sigma_a, sigma_a, sigma_s, sigma_s, Le, is_cube ? unit_cube : "Shape \"sphere\"\n");
+    struct world w = world_of(
+        "Integrator \"%s\" \"integer maxdepth\" 1000000\nWorldBegin\nMakeNamedMedium \"m\" \"string type\" \"homogeneous\" "
+        "\"spectrum sigma_a\" [300 %.9g 900 %.9g] \"spectrum sigma_s\" [300 %.9g 900 %.9g] \"spectrum Le\" [300 1 900 1] \"float Lescale\" %.9g\n"
+        "Material \"interface\" MediumInterface \"m\" \"\" %s",
+        integrator, sigma_a, sigma_a, sigma_s, sigma_s, Le, is_cube ? unit_cube : "Shape \"sphere\"\n");
     struct estimate e = mean_luminance(&w.job, onto, &is_cube, n);
     world_free(&w);
     return e;
@@ -220,14 +241,17 @@ static void isothermal(const struct row *row)
     check(row, "twin", glow_of(false, row->a, 0, 1, "simplevolpath", 2048), 3e-2);
 }
 
-/* Whatever scatters, the mean length of paths is 4 V / S (Dirac 1943; Blanco & Fournier 2003). a: cube, b: sigma_s. A trace of
- * glowing absorber measures it. */
+/* Whatever scatters, the mean length of paths is 4 V / S (Dirac 1943; Blanco & Fournier 2003). a: cube, b: sigma_s. A
+ * trace of glowing absorber measures it. */
 static void mean_chord(const struct row *row)
 {
     for (int i = 0; i < 3; ++i) {
         double sigma_s = i == 0 ? 0 : i == 1 ? 1 : 10;
         static const char *const ways[] = {"empty", "thin", "thick"};
-        check(row, ways[i], glow_of(row->a != 0, 1e-7, sigma_s, 1e7, "volpath", 2048), i == 0 ? 8 * GOAL : i == 1 ? 5e-3 : 1.5e-2);
+        check(row, ways[i], glow_of(row->a != 0, 1e-7, sigma_s, 1e7, "volpath", 2048),
+              i == 0   ? 8 * GOAL
+              : i == 1 ? 5e-3
+                       : 1.5e-2);
     }
 }
 
@@ -287,7 +311,8 @@ TEST(a_medium_that_absorbs_nothing_is_not_seen_in_an_even_sky)
     static const char *const ways[] = {"grey", "coloured", "twin"};
     for (int i = 0; i < 3; ++i) {
         struct matter m = i ? (struct matter){1, 0.5, 8} : (struct matter){1, 4, 4};
-        struct world w = scene_of(i == 2 ? "simplevolpath" : "volpath", 1000000, m, "Material \"interface\" MediumInterface \"m\" \"\" Shape \"sphere\"\n" SKY);
+        struct world w = scene_of(i == 2 ? "simplevolpath" : "volpath", 1000000, m,
+                                  "Material \"interface\" MediumInterface \"m\" \"\" Shape \"sphere\"\n" SKY);
         bool is_cube = false;
         struct estimate e = mean_luminance(&w.job, onto, &is_cube, 1024);
         world_free(&w);
@@ -307,7 +332,8 @@ TEST(glowing_walls_are_as_bright_through_a_white_medium)
     static const char *const names[] = {"grey", "coloured"};
     for (int i = 0; i < 2; ++i) {
         struct matter m = i ? (struct matter){1, 0.1, 2} : (struct matter){1, 0.8, 0.8};
-        struct world w = scene_of("volpath", 1000000, m, "MediumInterface \"m\" \"\" " BLACK GLOW_BOTH "Shape \"sphere\"\n");
+        struct world w =
+            scene_of("volpath", 1000000, m, "MediumInterface \"m\" \"\" " BLACK GLOW_BOTH "Shape \"sphere\"\n");
         struct estimate e = mean_luminance(&w.job, from_within, NULL, 1024);
         world_free(&w);
         expect_same(names[i], e, (struct estimate){1, 0, 0}, 1e-2);
@@ -320,12 +346,14 @@ static void spectral(const struct sr_render_job *job, int alone, int n, struct s
 {
     struct sr_worker worker = {0};
     for (int k = 0; k < n; ++k) {
-        struct sr_sampler sampler = sr_sampler_start(SR_SAMPLER_INDEPENDENT, alone < 0 ? 1 : 2 + (uint32_t)alone, 0, 0, 0, (uint32_t)k);
+        struct sr_sampler sampler =
+            sr_sampler_start(SR_SAMPLER_INDEPENDENT, alone < 0 ? 1 : 2 + (uint32_t)alone, 0, 0, 0, (uint32_t)k);
         struct sr_wavelengths w = {.pdf = SR_ONE};
         int shift = (int)(sr_sample4(&sampler, SR_USE_FILM)[0] * LANES); // any of them may be the first
         for (int i = 0; i < LANES; ++i)
             w.lambda[i] = 400 + 40 * (float)(alone < 0 ? (i + shift) % LANES : alone);
-        struct sr_path_start start = {.ray = {.o = {0.2f, 0.3f, 3}, .d = sr_normalize((sr_vec3){-0.1f, -0.12f, -1}), .t_max = INFINITY}};
+        struct sr_path_start start = {
+            .ray = {.o = {0.2f, 0.3f, 3}, .d = sr_normalize((sr_vec3){-0.1f, -0.12f, -1}), .t_max = INFINITY}};
         sr_spectrum L = job->integrator.model->L(job->integrator.self, job->scene, &start, &sampler, &w, NULL, &worker);
         if (alone >= 0)
             sr_tally_add(&tallies[alone], (double)sr_spectrum_mean(L));
@@ -336,14 +364,19 @@ static void spectral(const struct sr_render_job *job, int alone, int n, struct s
 
 TEST(wavelengths_together_find_what_each_finds_alone)
 {
-    // a ball of an absorbing, glowing, scattering medium of strong colour in a vessel of dispersing glass, lit by everything
-    static const char *const vessels[] = {"Material \"interface\"", "Material \"dielectric\" \"spectrum eta\" \"glass-SF11\""};
+    // a ball of an absorbing, glowing, scattering medium of strong colour in a vessel of dispersing glass, lit by
+    // everything
+    static const char *const vessels[] = {"Material \"interface\"",
+                                          "Material \"dielectric\" \"spectrum eta\" \"glass-SF11\""};
     for (int v = 0; v < 2; ++v) {
-        struct world w = world_of("Integrator \"volpath\" \"integer maxdepth\" 100\nWorldBegin\nMakeNamedMedium \"m\" \"string type\" \"homogeneous\" "
-                                  "\"float g\" 0.6 \"spectrum Le\" [300 1 900 2] \"float Lescale\" 0.5 \"spectrum sigma_a\" [400 0.1 550 1.5 700 0.02] "
-                                  "\"spectrum sigma_s\" [400 5 500 0.3 700 2.5]\nMediumInterface \"m\" \"\" %s Shape \"sphere\"\nMediumInterface \"m\" \"m\" " GREY
-                                  "Shape \"sphere\" \"float radius\" 0.2\n" SKY "LightSource \"distant\" \"float illuminance\" 3 \"point3 from\" [0 1 1]\n"
-                                  "MediumInterface \"\" \"\" " LAMP "Translate 1.5 0 0.5 Shape \"sphere\" \"float radius\" 0.4\n", vessels[v]);
+        struct world w = world_of(
+            "Integrator \"volpath\" \"integer maxdepth\" 100\nWorldBegin\nMakeNamedMedium \"m\" \"string type\" \"homogeneous\" "
+            "\"float g\" 0.6 \"spectrum Le\" [300 1 900 2] \"float Lescale\" 0.5 \"spectrum sigma_a\" [400 0.1 550 1.5 700 0.02] "
+            "\"spectrum sigma_s\" [400 5 500 0.3 700 2.5]\nMediumInterface \"m\" \"\" %s Shape \"sphere\"\nMediumInterface \"m\" \"m\" " GREY
+            "Shape \"sphere\" \"float radius\" 0.2\n" SKY
+            "LightSource \"distant\" \"float illuminance\" 3 \"point3 from\" [0 1 1]\n"
+            "MediumInterface \"\" \"\" " LAMP "Translate 1.5 0 0.5 Shape \"sphere\" \"float radius\" 0.4\n",
+            vessels[v]);
         struct sr_tally together[LANES] = {{0}}, alone[LANES] = {{0}};
         int n = (int)samples(60000);
         spectral(&w.job, -1, n, together);
@@ -360,20 +393,24 @@ TEST(wavelengths_together_find_what_each_finds_alone)
 
 TEST(the_plain_twin_finds_the_same_light)
 {
-    // a room full of fog, another medium in a ball of it, a glass ball of a third, a lamp, a mirror: everything but delta lights
-    static const char room[] = "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"float g\" 0.5 \"rgb sigma_a\" [.05 .05 .1] \"rgb sigma_s\" [.4 .3 .2]\n"
-                               "MakeNamedMedium \"milk\" \"string type\" \"homogeneous\" \"float g\" -0.3 \"rgb sigma_a\" [.1 .2 .5] \"rgb sigma_s\" [4 4 2]\n"
-                               "MakeNamedMedium \"ember\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1 1 1] \"rgb sigma_s\" [1 1 1] \"rgb Le\" [2 1 .3]\n";
-    static const char objects[] = "MediumInterface \"\" \"fog\" " GREY "Scale -1 1 1 Shape \"sphere\" \"float radius\" 3\nScale -1 1 1\n"
-                                  "Material \"interface\" MediumInterface \"milk\" \"fog\" Shape \"sphere\" \"float radius\" 0.7\n"
-                                  "Material \"dielectric\" MediumInterface \"ember\" \"fog\" AttributeBegin Translate 1.3 0 0 Shape \"sphere\" \"float radius\" 0.5 AttributeEnd\n"
-                                  "Material \"conductor\" \"float roughness\" 0.1 MediumInterface \"\" \"fog\" AttributeBegin Translate -1.3 0 0 Shape \"sphere\" \"float radius\" 0.5 AttributeEnd\n"
-                                  "AreaLightSource \"diffuse\" \"float scale\" 5 AttributeBegin Translate 0 2 0 Shape \"sphere\" \"float radius\" 0.6 AttributeEnd\n";
+    // a room full of fog, another medium in a ball of it, a glass ball of a third, a lamp, a mirror: everything but
+    // delta lights
+    static const char room[] =
+        "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"float g\" 0.5 \"rgb sigma_a\" [.05 .05 .1] \"rgb sigma_s\" [.4 .3 .2]\n"
+        "MakeNamedMedium \"milk\" \"string type\" \"homogeneous\" \"float g\" -0.3 \"rgb sigma_a\" [.1 .2 .5] \"rgb sigma_s\" [4 4 2]\n"
+        "MakeNamedMedium \"ember\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [1 1 1] \"rgb sigma_s\" [1 1 1] \"rgb Le\" [2 1 .3]\n";
+    static const char objects[] =
+        "MediumInterface \"\" \"fog\" " GREY "Scale -1 1 1 Shape \"sphere\" \"float radius\" 3\nScale -1 1 1\n"
+        "Material \"interface\" MediumInterface \"milk\" \"fog\" Shape \"sphere\" \"float radius\" 0.7\n"
+        "Material \"dielectric\" MediumInterface \"ember\" \"fog\" AttributeBegin Translate 1.3 0 0 Shape \"sphere\" \"float radius\" 0.5 AttributeEnd\n"
+        "Material \"conductor\" \"float roughness\" 0.1 MediumInterface \"\" \"fog\" AttributeBegin Translate -1.3 0 0 Shape \"sphere\" \"float radius\" 0.5 AttributeEnd\n"
+        "AreaLightSource \"diffuse\" \"float scale\" 5 AttributeBegin Translate 0 2 0 Shape \"sphere\" \"float radius\" 0.6 AttributeEnd\n";
     struct estimate e[2];
     for (int i = 0; i < 2; ++i) {
-        struct world w = world_of("Film \"rgb\" \"integer xresolution\" 1 \"integer yresolution\" 1\n%sMediumInterface \"\" \"fog\"\nLookAt 0 0 2.7 0 0 0 0 1 0 "
-                                  "Camera \"perspective\" \"float fov\" 75\nIntegrator \"%s\" \"integer maxdepth\" 100\nWorldBegin\n%s",
-                                  room, i ? "simplevolpath" : "volpath", objects);
+        struct world w = world_of(
+            "Film \"rgb\" \"integer xresolution\" 1 \"integer yresolution\" 1\n%sMediumInterface \"\" \"fog\"\nLookAt 0 0 2.7 0 0 0 0 1 0 "
+            "Camera \"perspective\" \"float fov\" 75\nIntegrator \"%s\" \"integer maxdepth\" 100\nWorldBegin\n%s",
+            room, i ? "simplevolpath" : "volpath", objects);
         e[i] = pixel_mean(&w.job, 0, 0, i ? 2048 : 1024, (const double[]){0, 1, 0});
         world_free(&w);
     }
@@ -383,16 +420,18 @@ TEST(the_plain_twin_finds_the_same_light)
 TEST(particles_and_paths_find_the_same_light_leaving)
 {
     // coloured fog around a grey ball, lit from outside: what leaves, and where the rest stays
-    struct world w = world_of("Integrator \"volpath\" \"integer maxdepth\" 1000\nWorldBegin\nMakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"float g\" 0.5 "
-                              "\"spectrum sigma_a\" [300 .3 600 0.1 900 1] \"spectrum sigma_s\" [300 2 900 .2]\nLightSource \"point\" \"point3 from\" [0 0 2.6] \"float power\" 1000\n"
-                              "Material \"interface\" MediumInterface \"m\" \"\" Shape \"sphere\" \"float radius\" 2\nMediumInterface \"m\" \"m\" " GREY
-                              "Shape \"sphere\" \"float radius\" 0.4\n#@ Meter \"flux\" \"string name\" \"F\" \"string shape\" \"sphere\" \"float radius\" 3 \"string side\" \"back\"\n");
+    struct world w = world_of(
+        "Integrator \"volpath\" \"integer maxdepth\" 1000\nWorldBegin\nMakeNamedMedium \"m\" \"string type\" \"homogeneous\" \"float g\" 0.5 "
+        "\"spectrum sigma_a\" [300 .3 600 0.1 900 1] \"spectrum sigma_s\" [300 2 900 .2]\nLightSource \"point\" \"point3 from\" [0 0 2.6] \"float power\" 1000\n"
+        "Material \"interface\" MediumInterface \"m\" \"\" Shape \"sphere\" \"float radius\" 2\nMediumInterface \"m\" \"m\" " GREY
+        "Shape \"sphere\" \"float radius\" 0.4\n#@ Meter \"flux\" \"string name\" \"F\" \"string shape\" \"sphere\" \"float radius\" 3 \"string side\" \"back\"\n");
     struct sr_measure_settings s = {.samples = (uint64_t)samples(8192) * REPLICATES, .replicates = REPLICATES};
     struct sr_arena arena = {0};
     struct sr_balance b;
     struct sr_error error = {0};
     EXPECT(sr_measure_balance(&w.job, &s, &arena, &b, &error) == SR_OK);
-    struct estimate escaped = {b.escaped[0].value, b.escaped[0].u, REPLICATES - 1}, closure = {1000 + b.closure[0].value, b.closure[0].u, REPLICATES - 1};
+    struct estimate escaped = {b.escaped[0].value, b.escaped[0].u, REPLICATES - 1},
+                    closure = {1000 + b.closure[0].value, b.closure[0].u, REPLICATES - 1};
     expect_same("closure", closure, (struct estimate){1000, 0, 0}, 5e-3);
     EXPECT_NEAR(b.in_media[0].value + b.by_object[1][0].value, b.absorbed[0].value, 1e-3);
     EXPECT(b.in_media[0].value > 20 && b.by_object[0][0].value == 0);
@@ -403,15 +442,18 @@ TEST(particles_and_paths_find_the_same_light_leaving)
 /* ---- where density varies ---- */
 
 #define GRID "MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" "
-#define SMOKE GRID "\"point3 p0\" [-.5 -.5 -.5] \"point3 p1\" [.5 .5 .5] \"integer nx\" 3 \"integer ny\" 3 \"integer nz\" 2 " \
-    "\"float density\" [0 0 0 .2 3 1 0 0 0  0 .5 0 0 9 0 0 .5 0] "
-#define LIT SKY "LightSource \"distant\" \"float illuminance\" 2 \"point3 from\" [1 2 3] \"point3 to\" [0 0 0]\n" LAMP \
-    "AttributeBegin Translate 0 1.2 0 Shape \"sphere\" \"float radius\" 0.3\nAttributeEnd\n"
+#define SMOKE                                                                                                          \
+    GRID "\"point3 p0\" [-.5 -.5 -.5] \"point3 p1\" [.5 .5 .5] \"integer nx\" 3 \"integer ny\" 3 \"integer nz\" 2 "    \
+         "\"float density\" [0 0 0 .2 3 1 0 0 0  0 .5 0 0 9 0 0 .5 0] "
+#define LIT                                                                                                            \
+    SKY "LightSource \"distant\" \"float illuminance\" 2 \"point3 from\" [1 2 3] \"point3 to\" [0 0 0]\n" LAMP         \
+        "AttributeBegin Translate 0 1.2 0 Shape \"sphere\" \"float radius\" 0.3\nAttributeEnd\n"
 
 static struct estimate of_cube(const char *integrator, const char *medium, const char *lights, double n)
 {
-    struct world w = world_of("Integrator \"%s\" \"integer maxdepth\" 1000\nWorldBegin\n%s%sMaterial \"interface\" MediumInterface \"m\" \"\"\n%s", integrator, medium, lights,
-                              unit_cube);
+    struct world w = world_of(
+        "Integrator \"%s\" \"integer maxdepth\" 1000\nWorldBegin\n%s%sMaterial \"interface\" MediumInterface \"m\" \"\"\n%s",
+        integrator, medium, lights, unit_cube);
     bool is_cube = true;
     struct estimate e = mean_luminance(&w.job, onto, &is_cube, n);
     world_free(&w);
@@ -420,10 +462,15 @@ static struct estimate of_cube(const char *integrator, const char *medium, const
 
 TEST(grids_of_one_density_are_uniform_media)
 {
-    static const char even[] = "\"rgb sigma_a\" [.2 .5 2] \"rgb sigma_s\" [4 2 1] \"float g\" 0.4 \"spectrum Le\" [300 1 900 1] \"float Lescale\" 1\n";
+    static const char even[] =
+        "\"rgb sigma_a\" [.2 .5 2] \"rgb sigma_s\" [4 2 1] \"float g\" 0.4 \"spectrum Le\" [300 1 900 1] \"float Lescale\" 1\n";
     char uniform[512], grid[1024]; // between the middles of its voxels; outwards, a grid thins out
     snprintf(uniform, sizeof uniform, "MakeNamedMedium \"m\" \"string type\" \"homogeneous\" %s", even);
-    snprintf(grid, sizeof grid, GRID "\"point3 p0\" [-2 -2 -2] \"point3 p1\" [2 2 2] \"integer nx\" 2 \"integer ny\" 2 \"integer nz\" 2 \"float density\" [1 1 1 1 1 1 1 1] %s", even);
+    snprintf(
+        grid, sizeof grid,
+        GRID
+        "\"point3 p0\" [-2 -2 -2] \"point3 p1\" [2 2 2] \"integer nx\" 2 \"integer ny\" 2 \"integer nz\" 2 \"float density\" [1 1 1 1 1 1 1 1] %s",
+        even);
     expect_same("volpath", of_cube("volpath", grid, LIT, 2048), of_cube("volpath", uniform, LIT, 2048), 1e-2);
     expect_same("twin", of_cube("simplevolpath", grid, SKY, 2048), of_cube("volpath", uniform, SKY, 2048), 2e-2);
 }
@@ -432,12 +479,13 @@ TEST(smoke_is_the_same_to_all_estimators)
 {
     // from nothing to thick, so that most collisions are null; coloured, glowing
     static const char smoke[] = SMOKE "\"rgb sigma_a\" [.2 .5 2] "
-                                     "\"rgb sigma_s\" [4 2 1] \"float g\" 0.4 \"spectrum Le\" [300 1 900 1]\n";
+                                      "\"rgb sigma_s\" [4 2 1] \"float g\" 0.4 \"spectrum Le\" [300 1 900 1]\n";
     static const char white[] = SMOKE "\"rgb sigma_a\" [0 0 0] "
-                                     "\"rgb sigma_s\" [4 2 1] \"float g\" 0.4\n";
+                                      "\"rgb sigma_s\" [4 2 1] \"float g\" 0.4\n";
     static const char fire[] = SMOKE "\"rgb sigma_a\" [1 2 3] "
-                                    "\"rgb sigma_s\" [0 0 0] \"spectrum Le\" [300 1 900 1]\n";
-    static const char lamps[] = SKY LAMP "AttributeBegin Translate 0 1.2 0 Shape \"sphere\" \"float radius\" 0.3\nAttributeEnd\n";
+                                     "\"rgb sigma_s\" [0 0 0] \"spectrum Le\" [300 1 900 1]\n";
+    static const char lamps[] =
+        SKY LAMP "AttributeBegin Translate 0 1.2 0 Shape \"sphere\" \"float radius\" 0.3\nAttributeEnd\n";
     expect_same("smoke", of_cube("volpath", smoke, lamps, 2048), of_cube("simplevolpath", smoke, lamps, 4096), 1.5e-2);
     expect_same("fire", of_cube("volpath", fire, lamps, 2048), of_cube("simplevolpath", fire, lamps, 4096), 1.5e-2);
     expect_same("furnace", of_cube("volpath", white, SKY, 2048), (struct estimate){1, 0, 0}, 1e-2);

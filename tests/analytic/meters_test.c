@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Every kind of meter in scenes whose readings are known: point sources at an angle, uniform skies, disks of light, by closed
- * forms or by quadrature in double. */
+/* Every kind of meter in scenes whose readings are known: point sources at an angle, uniform skies, disks of light, by
+ * closed forms or by quadrature in double. */
 #include "analytic/analytic.h"
 
 #define DEGREE (3.14159265358979323846 / 180)
@@ -13,7 +13,8 @@ static void read_meter(const struct row *row, enum sr_system system, double n, c
     static const char *const ways[] = {"path", "simplepath"};
     for (int i = 0; i < 2; ++i) {
         struct world w = world_of("Integrator \"%s\" \"integer maxdepth\" 1\nWorldBegin\n%s", ways[i], scene);
-        struct sr_measure_settings s = {.samples = (uint64_t)samples(n) * REPLICATES, .replicates = REPLICATES, .system = system};
+        struct sr_measure_settings s = {
+            .samples = (uint64_t)samples(n) * REPLICATES, .replicates = REPLICATES, .system = system};
         struct sr_arena arena = {0};
         struct sr_measurement m;
         struct sr_error error = {0};
@@ -38,9 +39,12 @@ static double dot(struct vec a, struct vec b)
 enum body { IRRADIANCE, CYLINDER, HALF_CYLINDER, HEMISPHERE, SPHERE, FLUENCE };
 static const struct vec axis = {0.36, -0.48, 0.8}, facing = {0.8, 0.6, 0}; // square to each other
 static const char *const bodies[] = {
-    "\"irradiance\" \"normal n\" [0.36 -0.48 0.8]",      "\"cylindrical\" \"vector3 axis\" [0.36 -0.48 0.8]",
-    "\"semicylindrical\" \"vector3 axis\" [0.36 -0.48 0.8] \"vector3 facing\" [0.8 0.6 0]", "\"hemispherical\" \"normal n\" [0.36 -0.48 0.8]",
-    "\"spherical\"", "\"fluence\"",
+    "\"irradiance\" \"normal n\" [0.36 -0.48 0.8]",
+    "\"cylindrical\" \"vector3 axis\" [0.36 -0.48 0.8]",
+    "\"semicylindrical\" \"vector3 axis\" [0.36 -0.48 0.8] \"vector3 facing\" [0.8 0.6 0]",
+    "\"hemispherical\" \"normal n\" [0.36 -0.48 0.8]",
+    "\"spherical\"",
+    "\"fluence\"",
 };
 static double response(enum body body, struct vec w)
 {
@@ -76,7 +80,8 @@ static double over_cone(enum body body, struct vec d, double a)
     for (int i = 0; i < N; ++i)
         for (int j = 0; j < 4 * N; ++j) {
             double s = sqrt(1 - z[i] * z[i]), phi = 2 * pi * (j + 0.5) / (4 * N), x = s * cos(phi), y = s * sin(phi);
-            struct vec w = {z[i] * d.x + x * t.x + y * b.x, z[i] * d.y + x * t.y + y * b.y, z[i] * d.z + x * t.z + y * b.z};
+            struct vec w = {z[i] * d.x + x * t.x + y * b.x, z[i] * d.y + x * t.y + y * b.y,
+                            z[i] * d.z + x * t.z + y * b.z};
             sum += wz[i] * 2 * pi / (4 * N) * response(body, w);
         }
     return sum;
@@ -91,8 +96,9 @@ static void of_point(const struct row *row)
     struct row exact = *row;
     struct vec w = {1 / sqrt(14), 2 / sqrt(14), 3 / sqrt(14)};
     exact.value = response((enum body)row->a, w) * 50 / 14;
-    snprintf(text, sizeof text, "LightSource \"point\" \"point3 from\" [1 2 4] \"float power\" %.15g\n#@ Meter %s \"point3 p\" [0 0 1]\n", 4 * pi * 50,
-             bodies[(int)row->a]);
+    snprintf(text, sizeof text,
+             "LightSource \"point\" \"point3 from\" [1 2 4] \"float power\" %.15g\n#@ Meter %s \"point3 p\" [0 0 1]\n",
+             4 * pi * 50, bodies[(int)row->a]);
     read_meter(&exact, SR_PHOTOPIC, 64, text);
 }
 
@@ -104,17 +110,19 @@ static void of_sky(const struct row *row)
     read_meter(row, SR_PHOTOPIC, 1024, text);
 }
 
-/* A disk of 3 cd/m^2 that fills a cone of 25 degrees around (2, -1, 2)/3, partly below the horizon of none of the bodies. */
+/* A disk of 3 cd/m^2 that fills a cone of 25 degrees around (2, -1, 2)/3, partly below the horizon of none of the
+ * bodies. */
 static void of_disk(const struct row *row)
 {
     char text[1024];
     struct row exact = *row;
     struct vec d = {2 / 3., -1 / 3., 2 / 3.};
     exact.value = 3 * over_cone((enum body)row->a, d, 25 * DEGREE);
-    snprintf(text, sizeof text,
-             "AttributeBegin\nAreaLightSource \"diffuse\" \"float scale\" 3 \"bool twosided\" true\nRotate %.9g 1 2 0 Shape \"disk\" \"float height\" 2 \"float radius\" %.9g\n"
-             "AttributeEnd\n#@ Meter %s\n",
-             acos(2 / 3.) / DEGREE, 2 * tan(25 * DEGREE), bodies[(int)row->a]);
+    snprintf(
+        text, sizeof text,
+        "AttributeBegin\nAreaLightSource \"diffuse\" \"float scale\" 3 \"bool twosided\" true\nRotate %.9g 1 2 0 Shape \"disk\" \"float height\" 2 \"float radius\" %.9g\n"
+        "AttributeEnd\n#@ Meter %s\n",
+        acos(2 / 3.) / DEGREE, 2 * tan(25 * DEGREE), bodies[(int)row->a]);
     read_meter(&exact, SR_PHOTOPIC, 4096, text);
 }
 
@@ -125,9 +133,11 @@ static void of_disk_above(const struct row *row)
         "\"irradiance\"", "\"cylindrical\"", "\"semicylindrical\"", "\"hemispherical\"", "\"spherical\"", "\"fluence\"",
     };
     char text[1024];
-    snprintf(text, sizeof text,
-             "Translate 5 1 2 Rotate 63 1 4 2\nAttributeBegin\nAreaLightSource \"diffuse\" \"bool twosided\" true Shape \"disk\" \"float height\" 2 "
-             "\"float radius\" %.9g\nAttributeEnd\n#@ Meter %s\n", 2 * tan(25 * DEGREE), straight[(int)row->a]);
+    snprintf(
+        text, sizeof text,
+        "Translate 5 1 2 Rotate 63 1 4 2\nAttributeBegin\nAreaLightSource \"diffuse\" \"bool twosided\" true Shape \"disk\" \"float height\" 2 "
+        "\"float radius\" %.9g\nAttributeEnd\n#@ Meter %s\n",
+        2 * tan(25 * DEGREE), straight[(int)row->a]);
     read_meter(row, SR_PHOTOPIC, 4096, text);
 }
 
@@ -139,17 +149,20 @@ static void cone(const struct row *row)
     char text[512];
     struct row exact = *row;
     exact.value = 8 * (1 - cos(5 * DEGREE)) / (1 - cos(row->a * DEGREE));
-    snprintf(text, sizeof text,
-             "AreaLightSource \"diffuse\" \"float scale\" 8 \"bool twosided\" true Shape \"disk\" \"float height\" 2 \"float radius\" %.9g\n"
-             "#@ Meter \"radiance\" \"vector3 d\" [0 0 1] \"float halfangle\" %.9g\n", 2 * tan(5 * DEGREE), row->a);
+    snprintf(
+        text, sizeof text,
+        "AreaLightSource \"diffuse\" \"float scale\" 8 \"bool twosided\" true Shape \"disk\" \"float height\" 2 \"float radius\" %.9g\n"
+        "#@ Meter \"radiance\" \"vector3 d\" [0 0 1] \"float halfangle\" %.9g\n",
+        2 * tan(5 * DEGREE), row->a);
     read_meter(&exact, SR_PHOTOPIC, 8192, text);
 }
 
 /* Along a ray that ends at a grey wall under a distant light: L = rho E / pi. */
 static void ray(const struct row *row)
 {
-    read_meter(row, SR_PHOTOPIC, 64, "LightSource \"distant\" \"float illuminance\" 10 \"point3 from\" [0 0 1] \"point3 to\" [0 0 0]\n" GREY
-                                     "Shape \"disk\"\n#@ Meter \"radiance\" \"point3 p\" [0.3 0 2] \"point3 to\" [0.1 0.1 0]\n");
+    read_meter(row, SR_PHOTOPIC, 64,
+               "LightSource \"distant\" \"float illuminance\" 10 \"point3 from\" [0 0 1] \"point3 to\" [0 0 0]\n" GREY
+               "Shape \"disk\"\n#@ Meter \"radiance\" \"point3 p\" [0.3 0 2] \"point3 to\" [0.1 0.1 0]\n");
 }
 
 /* ---- flux ---- */
@@ -161,27 +174,38 @@ static void flux(const struct row *row)
         double n;
     } cases[] = {
         // 100 cd at the origin
-        {"LightSource \"point\" \"float power\" 1256.6370614359172\n#@ Meter \"flux\" \"string shape\" \"sphere\" \"point3 p\" [3 0 0] \"float radius\" 1\n", 65536},
-        {"LightSource \"point\" \"float power\" 1256.6370614359172\n#@ Meter \"flux\" \"string shape\" \"disk\" \"point3 p\" [0 0 1] \"normal n\" [0 0 -1] \"float radius\" 2\n", 8192},
-        {"LightSource \"point\" \"float power\" 1256.6370614359172\n#@ Meter \"flux\" \"string shape\" \"sphere\" \"point3 p\" [0.3 0 0] \"float radius\" 1 \"string side\" \"net\"\n", 8192},
-        {"LightSource \"point\" \"float power\" 1256.6370614359172\n#@ Meter \"flux\" \"string shape\" \"sphere\" \"point3 p\" [0.3 0 0] \"float radius\" 1 \"string side\" \"back\"\n", 8192},
+        {"LightSource \"point\" \"float power\" 1256.6370614359172\n#@ Meter \"flux\" \"string shape\" \"sphere\" \"point3 p\" [3 0 0] \"float radius\" 1\n",
+         65536},
+        {"LightSource \"point\" \"float power\" 1256.6370614359172\n#@ Meter \"flux\" \"string shape\" \"disk\" \"point3 p\" [0 0 1] \"normal n\" [0 0 -1] \"float radius\" 2\n",
+         8192},
+        {"LightSource \"point\" \"float power\" 1256.6370614359172\n#@ Meter \"flux\" \"string shape\" \"sphere\" \"point3 p\" [0.3 0 0] \"float radius\" 1 \"string side\" \"net\"\n",
+         8192},
+        {"LightSource \"point\" \"float power\" 1256.6370614359172\n#@ Meter \"flux\" \"string shape\" \"sphere\" \"point3 p\" [0.3 0 0] \"float radius\" 1 \"string side\" \"back\"\n",
+         8192},
         // a sky of 2 cd/m^2 onto a black ball of radius 0.5: pi L A
-        {"LightSource \"infinite\" \"float scale\" 2\n" BLACK "#@ Name \"ball\"\nShape \"sphere\" \"float radius\" 0.5\n#@ Meter \"flux\" \"string surface\" \"ball\"\n", 1024},
+        {"LightSource \"infinite\" \"float scale\" 2\n" BLACK
+         "#@ Name \"ball\"\nShape \"sphere\" \"float radius\" 0.5\n#@ Meter \"flux\" \"string surface\" \"ball\"\n",
+         1024},
         // the same through both sides of a rectangle of 2 x 3 that is not there
-        {"LightSource \"infinite\" \"float scale\" 2\n#@ Meter \"flux\" \"vector3 u\" [2 0 0] \"vector3 v\" [0 0 3] \"string side\" \"both\"\n", 1024},
+        {"LightSource \"infinite\" \"float scale\" 2\n#@ Meter \"flux\" \"vector3 u\" [2 0 0] \"vector3 v\" [0 0 3] \"string side\" \"both\"\n",
+         1024},
         // C1: opposed unit squares, gap 1; the glowing one is above. Named, of two triangles
-        {GLOW_BOTH "Shape \"bilinearmesh\" \"point3 P\" [0 0 1 1 0 1 0 1 1 1 1 1]\nAreaLightSource \"none\"\n"
-         "#@ Name \"floor\"\nShape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 0] \"integer indices\" [0 1 2 0 2 3]\n#@ Meter \"flux\" \"string surface\" \"floor\"\n", 16384},
+        {GLOW_BOTH
+         "Shape \"bilinearmesh\" \"point3 P\" [0 0 1 1 0 1 0 1 1 1 1 1]\nAreaLightSource \"none\"\n"
+         "#@ Name \"floor\"\nShape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 0] \"integer indices\" [0 1 2 0 2 3]\n#@ Meter \"flux\" \"string surface\" \"floor\"\n",
+         16384},
         // onto the outside of a cylinder (radius 1, height 2) from a distant light square to its axis: E 2 r h
         {"LightSource \"distant\" \"float illuminance\" 5 \"point3 from\" [1 0 0] \"point3 to\" [0 0 0]\n" BLACK
-         "#@ Name \"mast\"\nShape \"cylinder\" \"float radius\" 1 \"float zmin\" 0 \"float zmax\" 2\n#@ Meter \"flux\" \"string surface\" \"mast\"\n", 16384},
+         "#@ Name \"mast\"\nShape \"cylinder\" \"float radius\" 1 \"float zmin\" 0 \"float zmax\" 2\n#@ Meter \"flux\" \"string surface\" \"mast\"\n",
+         16384},
     };
     char scene[1024];
     snprintf(scene, sizeof scene, "%s", cases[(int)row->a].scene);
     char *none = strstr(scene, "AreaLightSource \"none\"\n");
     if (none) { // the lamp alone glows
         char text[1024];
-        snprintf(text, sizeof text, "AttributeBegin\n%.*sAttributeEnd\n%s", (int)(none - scene), scene, none + strlen("AreaLightSource \"none\"\n"));
+        snprintf(text, sizeof text, "AttributeBegin\n%.*sAttributeEnd\n%s", (int)(none - scene), scene,
+                 none + strlen("AreaLightSource \"none\"\n"));
         snprintf(scene, sizeof scene, "%s", text);
     }
     read_meter(row, SR_PHOTOPIC, cases[(int)row->a].n, scene);
@@ -192,15 +216,18 @@ static void flux(const struct row *row)
 /* Irradiance of one wavelength band under a sky that is flat in wavelength: E_p / E_e is lambda / (h c N_A). */
 static void photons(const struct row *row)
 {
-    struct world w = world_of("WorldBegin\nLightSource \"infinite\" \"spectrum L\" [360 1 830 1]\n#@ Meter \"irradiance\"\n");
-    struct sr_measure_settings s = {.samples = (uint64_t)samples(2048) * REPLICATES, .replicates = REPLICATES, .system = SR_PHOTON};
+    struct world w =
+        world_of("WorldBegin\nLightSource \"infinite\" \"spectrum L\" [360 1 830 1]\n#@ Meter \"irradiance\"\n");
+    struct sr_measure_settings s = {
+        .samples = (uint64_t)samples(2048) * REPLICATES, .replicates = REPLICATES, .system = SR_PHOTON};
     struct sr_arena arena = {0};
     struct sr_measurement m;
     struct sr_error error = {0};
     w.job.lambda = (struct sr_lambda_range){(float)row->a - 0.05f, (float)row->a + 0.05f};
     EXPECT_EQUAL_INT(sr_measure(&w.job, &w.scene.meters[0], &s, &arena, &m, &error), SR_OK);
     double ratio = m.value[SR_PHOTON].value / m.value[SR_RADIOMETRIC].value;
-    double u = hypot(m.value[SR_PHOTON].u / m.value[SR_PHOTON].value, m.value[SR_RADIOMETRIC].u / m.value[SR_RADIOMETRIC].value);
+    double u = hypot(m.value[SR_PHOTON].u / m.value[SR_PHOTON].value,
+                     m.value[SR_RADIOMETRIC].u / m.value[SR_RADIOMETRIC].value);
     check(row, "path", (struct estimate){ratio, ratio * u, REPLICATES - 1}, meter_goal);
     sr_arena_free(&arena);
     world_free(&w);
@@ -209,12 +236,16 @@ static void photons(const struct row *row)
 /* The spectrum of an illuminant through a sky: bins at 450 and 650 nm, their ratio that of illuminant A's formula. */
 static void bins(const struct row *row)
 {
-    struct world w = world_of("WorldBegin\nLightSource \"infinite\" \"spectrum L\" \"stdillum-A\"\n#@ Meter \"irradiance\"\n");
-    struct sr_measure_settings s = {.samples = (uint64_t)samples(16384) * REPLICATES, .replicates = REPLICATES, .system = SR_RADIOMETRIC};
+    struct world w =
+        world_of("WorldBegin\nLightSource \"infinite\" \"spectrum L\" \"stdillum-A\"\n#@ Meter \"irradiance\"\n");
+    struct sr_measure_settings s = {
+        .samples = (uint64_t)samples(16384) * REPLICATES, .replicates = REPLICATES, .system = SR_RADIOMETRIC};
     struct sr_arena arena = {0};
     struct sr_measurement m;
     struct sr_error error = {0};
-    EXPECT_EQUAL_INT(sr_spectrometer_prepare(450, 200, 650, 5, row->a == 0 ? SR_BAND_TRIANGULAR : SR_BAND_RECTANGULAR, &s.spectrometer, &error), SR_OK);
+    EXPECT_EQUAL_INT(sr_spectrometer_prepare(450, 200, 650, 5, row->a == 0 ? SR_BAND_TRIANGULAR : SR_BAND_RECTANGULAR,
+                                             &s.spectrometer, &error),
+                     SR_OK);
     EXPECT_EQUAL_INT(sr_measure(&w.job, &w.scene.meters[0], &s, &arena, &m, &error), SR_OK);
     struct sr_quantity ratio = sr_quantity_ratio(&m.spectrum[1], &m.spectrum[0]);
     check(row, "path", (struct estimate){ratio.value, ratio.u, ratio.degrees}, 1e-2);
@@ -287,7 +318,8 @@ TEST(meters_read_what_closed_forms_say)
 {
     double a = CONE_A, C1 = 0.199824895698;
     for (struct row *r = meter_rows; r->id; ++r) {
-        const double above[] = {pi * sin(a) * sin(a), a - sin(a) * cos(a), a - sin(a) * cos(a), pi / 2 * (1 - cos(a) + sin(a) * sin(a) / 2),
+        const double above[] = {pi * sin(a) * sin(a),  a - sin(a) * cos(a),
+                                a - sin(a) * cos(a),   pi / 2 * (1 - cos(a) + sin(a) * sin(a) / 2),
                                 pi / 2 * (1 - cos(a)), 2 * pi * (1 - cos(a))};
         if (r->measure == of_disk_above)
             r->value = above[(int)r->a];

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What moves while the shutter is open: means over time in closed form or by quadrature, and no rays lost at surfaces that turn. */
+/* What moves while the shutter is open: means over time in closed form or by quadrature, and no rays lost at surfaces
+ * that turn. */
 #include "analytic/analytic.h"
 
 #define DEGREE (3.14159265358979323846 / 180)
@@ -8,8 +9,9 @@ static const double luminance[3] = {0, 1, 0};
 static const double goal = 1e-3; // STERADIAN_TEST_EFFORT brings it down to GOAL
 
 #define SKY "LightSource \"infinite\" \"float scale\" 1\n"
-#define WINDOW "Integrator \"path\" \"integer maxdepth\" 0\n" \
-               "Film \"rgb\" \"integer xresolution\" 1 \"integer yresolution\" 1\nPixelFilter \"box\"\n"
+#define WINDOW                                                                                                         \
+    "Integrator \"path\" \"integer maxdepth\" 0\n"                                                                     \
+    "Film \"rgb\" \"integer xresolution\" 1 \"integer yresolution\" 1\nPixelFilter \"box\"\n"
 
 static void see(const struct row *row, double n, const char *scene)
 {
@@ -45,7 +47,8 @@ static double clipped_area(const double (*corner)[2], int n)
     return fabs(area);
 }
 
-/* What a window 2 wide sees of the sky past a rectangle that has turned by an angle [deg], its middle 0.66 off the axis. */
+/* What a window 2 wide sees of the sky past a rectangle that has turned by an angle [deg], its middle 0.66 off the
+ * axis. */
 static double sky(double angle)
 {
     static const double x[4] = {0.2, 1.0, 1.0, 0.2}, y[4] = {-0.7, -0.7, 0.7, 0.7};
@@ -65,21 +68,27 @@ static double mean_sky(double angle)
     return sum / N;
 }
 
-#define RECTANGLE BLACK "Scale 1.1 1.1 1.1 Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [0.2 -0.7 0  1 -0.7 0  1 0.7 0  0.2 0.7 0]\n"
+#define RECTANGLE                                                                                                      \
+    BLACK                                                                                                              \
+    "Scale 1.1 1.1 1.1 Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [0.2 -0.7 0  1 -0.7 0  1 0.7 0  0.2 0.7 0]\n"
 /* a: the whole turn [deg]; b: what turns. */
 static void turning(const struct row *row)
 {
     char text[2048];
     static const char *const scenes[] = {
-        "Translate 0 0 3 Camera \"orthographic\"\n" WINDOW "WorldBegin\n" SKY "ActiveTransform EndTime Rotate %g 0 0 1 ActiveTransform All\n" RECTANGLE,
-        "Translate 0 0 3 ActiveTransform EndTime Rotate %g 0 0 1 ActiveTransform All Camera \"orthographic\"\n" WINDOW "WorldBegin\n" SKY RECTANGLE,
-        "Translate 0 0 3 Camera \"orthographic\"\n" WINDOW "WorldBegin\n" SKY "ObjectBegin \"a\"\n" RECTANGLE "ObjectEnd\n"
+        "Translate 0 0 3 Camera \"orthographic\"\n" WINDOW "WorldBegin\n" SKY
+        "ActiveTransform EndTime Rotate %g 0 0 1 ActiveTransform All\n" RECTANGLE,
+        "Translate 0 0 3 ActiveTransform EndTime Rotate %g 0 0 1 ActiveTransform All Camera \"orthographic\"\n" WINDOW
+        "WorldBegin\n" SKY RECTANGLE,
+        "Translate 0 0 3 Camera \"orthographic\"\n" WINDOW "WorldBegin\n" SKY "ObjectBegin \"a\"\n" RECTANGLE
+        "ObjectEnd\n"
         "ActiveTransform EndTime Rotate %g 0 0 1 ActiveTransform All ObjectInstance \"a\"\n",
-        "Translate 0 0 3 Camera \"orthographic\"\n" WINDOW "WorldBegin\n" SKY "ObjectBegin \"a\" ActiveTransform EndTime Rotate %g 0 0 1 ActiveTransform All\n" RECTANGLE
+        "Translate 0 0 3 Camera \"orthographic\"\n" WINDOW "WorldBegin\n" SKY
+        "ObjectBegin \"a\" ActiveTransform EndTime Rotate %g 0 0 1 ActiveTransform All\n" RECTANGLE
         "ObjectEnd\nActiveTransform EndTime Rotate %g 0 0 1 ActiveTransform All ObjectInstance \"a\"\n",
         // over the shutter's middle half, within times of its own
-        "TransformTimes 2.25 2.75 Translate 0 0 3 Camera \"orthographic\" \"float shutteropen\" 2 \"float shutterclose\" 3\n" WINDOW "WorldBegin\n" SKY
-        "ActiveTransform EndTime Rotate %g 0 0 1 ActiveTransform All\n" RECTANGLE,
+        "TransformTimes 2.25 2.75 Translate 0 0 3 Camera \"orthographic\" \"float shutteropen\" 2 \"float shutterclose\" 3\n" WINDOW
+        "WorldBegin\n" SKY "ActiveTransform EndTime Rotate %g 0 0 1 ActiveTransform All\n" RECTANGLE,
     };
     int kind = (int)row->b;
     snprintf(text, sizeof text, scenes[kind], kind == 3 ? row->a / 2 : row->a, row->a / 2);
@@ -90,16 +99,19 @@ static void turning(const struct row *row)
     see(&known, 16384, text);
 }
 
-/* Irradiance from a sky of luminance 1 past a black disk that rises from a to b above the point, its radius r = 1: 1 minus what it
- * hides, r^2 / (r^2 + h^2), of which the mean over h is (atan(b) - atan(a)) / (b - a). Times pi. */
+/* Irradiance from a sky of luminance 1 past a black disk that rises from a to b above the point, its radius r = 1: 1
+ * minus what it hides, r^2 / (r^2 + h^2), of which the mean over h is (atan(b) - atan(a)) / (b - a). Times pi. */
 static void rising(const struct row *row)
 {
     struct row known = *row;
     known.value = (double)SR_PI * (1 - (atan(row->b) - atan(row->a)) / (row->b - row->a));
-    struct world w = world_of("Integrator \"path\" \"integer maxdepth\" 0\nWorldBegin\n" SKY BLACK
-                              "AttributeBegin Translate 0 0 %.9g ActiveTransform EndTime Translate 0 0 %.9g Shape \"disk\" AttributeEnd\n"
-                              "#@ Meter \"irradiance\" \"point3 p\" [0 0 0] \"normal n\" [0 0 1]\n", row->a, row->b - row->a);
-    struct sr_measure_settings s = {.samples = (uint64_t)samples(32768) * REPLICATES, .replicates = REPLICATES, .system = SR_PHOTOPIC};
+    struct world w = world_of(
+        "Integrator \"path\" \"integer maxdepth\" 0\nWorldBegin\n" SKY BLACK
+        "AttributeBegin Translate 0 0 %.9g ActiveTransform EndTime Translate 0 0 %.9g Shape \"disk\" AttributeEnd\n"
+        "#@ Meter \"irradiance\" \"point3 p\" [0 0 0] \"normal n\" [0 0 1]\n",
+        row->a, row->b - row->a);
+    struct sr_measure_settings s = {
+        .samples = (uint64_t)samples(32768) * REPLICATES, .replicates = REPLICATES, .system = SR_PHOTOPIC};
     struct sr_arena arena = {0};
     struct sr_measurement m;
     struct sr_error error = {0};
@@ -125,16 +137,17 @@ TEST(means_over_the_shutter_are_right)
     run_rows("motion", rows);
 }
 
-/* A convex grey body before a sky of luminance 1 is as bright as its reflectance, if no path meets it twice; within a closed one
- * no light is, if no path leaks out. Turned and stretched, far from the origin. */
+/* A convex grey body before a sky of luminance 1 is as bright as its reflectance, if no path meets it twice; within a
+ * closed one no light is, if no path leaks out. Turned and stretched, far from the origin. */
 static void look_for_leaks(const char *body, bool inside, double allowed)
 {
     double from = inside ? 10.2 : 0;
-    struct world w = world_of("LookAt 1000 10 %.9g  1000 10 2010.5  0 1 0 Camera \"perspective\" \"float fov\" %d\nIntegrator \"path\" \"integer maxdepth\" 40\n"
-                              "Film \"rgb\" \"integer xresolution\" 64 \"integer yresolution\" 64\nPixelFilter \"box\"\nWorldBegin\n" SKY
-                              "Material \"diffuse\" \"spectrum reflectance\" [360 0.5 830 0.5]\n"
-                              "Translate 1000 10 2010 Rotate 30 1 2 3 ActiveTransform EndTime Rotate 77 3 -1 2 Scale 1.3 1 0.8 ActiveTransform All Scale 3 3 3 %s\n",
-                              2000 + from, inside ? 100 : 50, body);
+    struct world w = world_of(
+        "LookAt 1000 10 %.9g  1000 10 2010.5  0 1 0 Camera \"perspective\" \"float fov\" %d\nIntegrator \"path\" \"integer maxdepth\" 40\n"
+        "Film \"rgb\" \"integer xresolution\" 64 \"integer yresolution\" 64\nPixelFilter \"box\"\nWorldBegin\n" SKY
+        "Material \"diffuse\" \"spectrum reflectance\" [360 0.5 830 0.5]\n"
+        "Translate 1000 10 2010 Rotate 30 1 2 3 ActiveTransform EndTime Rotate 77 3 -1 2 Scale 1.3 1 0.8 ActiveTransform All Scale 3 3 3 %s\n",
+        2000 + from, inside ? 100 : 50, body);
     struct sr_worker worker = {0};
     uint32_t n = samples(16), bad = 0, met = 0;
     for (uint32_t y = 0; y < 64; ++y)
@@ -148,16 +161,19 @@ static void look_for_leaks(const char *body, bool inside, double allowed)
             }
     EXPECT(met > 64 * 64 * n / 5);
     if (bad > allowed * met)
-        test_fail(__FILE__, __LINE__, "%u of %u rays went astray, %s, %.40s", bad, met, inside ? "inside" : "outside", body);
+        test_fail(__FILE__, __LINE__, "%u of %u rays went astray, %s, %.40s", bad, met, inside ? "inside" : "outside",
+                  body);
     world_free(&w);
 }
 
 TEST(surfaces_that_turn_do_not_leak)
 {
-    static const char cube[] = "Shape \"trianglemesh\" \"point3 P\" [-1 -1 -1  1 -1 -1  1 1 -1  -1 1 -1  -1 -1 1  1 -1 1  1 1 1  -1 1 1]\n"
-                               "\"integer indices\" [0 2 1 0 3 2  4 5 6 4 6 7  0 1 5 0 5 4  3 6 2 3 7 6  1 2 6 1 6 5  0 4 7 0 7 3]\n";
+    static const char cube[] =
+        "Shape \"trianglemesh\" \"point3 P\" [-1 -1 -1  1 -1 -1  1 1 -1  -1 1 -1  -1 -1 1  1 -1 1  1 1 1  -1 1 1]\n"
+        "\"integer indices\" [0 2 1 0 3 2  4 5 6 4 6 7  0 1 5 0 5 4  3 6 2 3 7 6  1 2 6 1 6 5  0 4 7 0 7 3]\n";
     for (int inside = 0; inside < 2; ++inside) {
         look_for_leaks("Shape \"sphere\"", inside, 0);
-        look_for_leaks(cube, inside, inside ? 2e-4 : 0); // in an edge, on one face is off the other; so it is where nothing moves
+        look_for_leaks(cube, inside,
+                       inside ? 2e-4 : 0); // in an edge, on one face is off the other; so it is where nothing moves
     }
 }

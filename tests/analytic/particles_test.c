@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-/* Particles of light: where the power of a scene goes, and the far field of luminaires, against closed forms; and meters that
- * paths from the lights are joined to. |z| < 4.9 of 16 replicates, relative standard errors of at most 1 % (but in slow builds, which draw few samples). */
+/* Particles of light: where the power of a scene goes, and the far field of luminaires, against closed forms; and
+ * meters that paths from the lights are joined to. |z| < 4.9 of 16 replicates, relative standard errors of at most 1 %
+ * (but in slow builds, which draw few samples). */
 #include "analytic/analytic.h"
 
-#define WORLD "LookAt 0 0 -3  0 0 0  0 1 0 Camera \"perspective\" Film \"rgb\" \"string filename\" \"a.exr\" Integrator \"path\" \"integer maxdepth\" 100\nWorldBegin\n"
+#define WORLD                                                                                                          \
+    "LookAt 0 0 -3  0 0 0  0 1 0 Camera \"perspective\" Film \"rgb\" \"string filename\" \"a.exr\" Integrator \"path\" \"integer maxdepth\" 100\nWorldBegin\n"
 static const double pi = 3.14159265358979323846;
 
 static void expect(const char *what, const struct sr_quantity *q, double value)
@@ -11,7 +13,8 @@ static void expect(const char *what, const struct sr_quantity *q, double value)
     double z = q->u > 0 ? fabs(q->value - value) / q->u : 0;
     printf("  %-44s %.6g +- %.2g, known %.6g, z %.2f\n", what, q->value, q->u, value, z);
     EXPECT(q->u <= 0.01 * fmax(fabs(value), fabs(q->value)) || value == 0 || is_slow_build());
-    EXPECT(fabs(q->value - value) < 4.9 * q->u + 2e-5 * fabs(value) || (z < 8 && sr_student_p_two_sided(z, q->degrees) > 1e-6));
+    EXPECT(fabs(q->value - value) < 4.9 * q->u + 2e-5 * fabs(value) ||
+           (z < 8 && sr_student_p_two_sided(z, q->degrees) > 1e-6));
 }
 
 static struct sr_balance balance_of(const struct world *w, struct sr_arena *arena, double n)
@@ -28,8 +31,10 @@ static struct sr_balance balance_of(const struct world *w, struct sr_arena *aren
 // a closed uniform enclosure absorbs all that it emits, each wall by its area
 TEST(a_closed_box_absorbs_what_it_emits)
 {
-    struct world w = world_of(WORLD "Material \"diffuse\" \"spectrum reflectance\" [360 .8 830 .8]\nReverseOrientation AreaLightSource \"diffuse\" \"float power\" 60\n"
-                       "Shape \"sphere\" \"float radius\" 2\n");
+    struct world w = world_of(
+        WORLD
+        "Material \"diffuse\" \"spectrum reflectance\" [360 .8 830 .8]\nReverseOrientation AreaLightSource \"diffuse\" \"float power\" 60\n"
+        "Shape \"sphere\" \"float radius\" 2\n");
     struct sr_arena arena = {0};
     struct sr_balance b = balance_of(&w, &arena, 40000);
     expect("D1: emitted", &b.emitted[0], 60);
@@ -42,14 +47,18 @@ TEST(a_closed_box_absorbs_what_it_emits)
     world_free(&w);
 }
 
-/* A sphere with a port of the share f of its area, a small lamp within: of light that has met the wall once, each bounce meets the
- * wall with 1 - f and the port with f, so that escaped = rho f / (1 - rho (1 - f)) of what the wall receives first. */
+/* A sphere with a port of the share f of its area, a small lamp within: of light that has met the wall once, each
+ * bounce meets the wall with 1 - f and the port with f, so that escaped = rho f / (1 - rho (1 - f)) of what the wall
+ * receives first. */
 TEST(an_integrating_sphere_lets_the_known_share_escape)
 {
     const double rho = 0.9, f = 0.02, cos_port = 1 - 2 * f;
-    struct world w = world_of(WORLD "AttributeBegin Material \"diffuse\" \"spectrum reflectance\" [360 %g 830 %g]\n"
-                                    "Shape \"sphere\" \"float radius\" 1 \"float zmax\" %.9g AttributeEnd\n"
-                                    "LightSource \"spot\" \"float power\" 100 \"point3 from\" [0 0 0] \"point3 to\" [0 0 -1] \"float coneangle\" 60\n", rho, rho, cos_port);
+    struct world w = world_of(
+        WORLD
+        "AttributeBegin Material \"diffuse\" \"spectrum reflectance\" [360 %g 830 %g]\n"
+        "Shape \"sphere\" \"float radius\" 1 \"float zmax\" %.9g AttributeEnd\n"
+        "LightSource \"spot\" \"float power\" 100 \"point3 from\" [0 0 0] \"point3 to\" [0 0 -1] \"float coneangle\" 60\n",
+        rho, rho, cos_port);
     struct sr_arena arena = {0};
     struct sr_balance b = balance_of(&w, &arena, 60000);
     double escaped = 100 * rho * f / (1 - rho * (1 - f));
@@ -63,10 +72,12 @@ TEST(an_integrating_sphere_lets_the_known_share_escape)
 
 TEST(clear_glass_absorbs_nothing_and_black_all_of_the_rest)
 {
-    struct world w = world_of(WORLD "LightSource \"point\" \"float power\" 50 \"point3 from\" [0 0 2]\n"
-                                    "Material \"dielectric\" \"spectrum eta\" \"glass-BK7\" Shape \"sphere\" \"float radius\" 1\n"
-                                    "Material \"dielectric\" \"float eta\" 1.5 \"float roughness\" 0 AttributeBegin Translate 0 0 3.5 Shape \"sphere\" \"float radius\" 1 AttributeEnd\n"
-                                    BLACK "AttributeBegin Translate 0 0 -1.5 Shape \"disk\" \"float radius\" 100 AttributeEnd\n");
+    struct world w = world_of(
+        WORLD
+        "LightSource \"point\" \"float power\" 50 \"point3 from\" [0 0 2]\n"
+        "Material \"dielectric\" \"spectrum eta\" \"glass-BK7\" Shape \"sphere\" \"float radius\" 1\n"
+        "Material \"dielectric\" \"float eta\" 1.5 \"float roughness\" 0 AttributeBegin Translate 0 0 3.5 Shape \"sphere\" \"float radius\" 1 AttributeEnd\n" BLACK
+        "AttributeBegin Translate 0 0 -1.5 Shape \"disk\" \"float radius\" 100 AttributeEnd\n");
     struct sr_arena arena = {0};
     struct sr_balance b = balance_of(&w, &arena, 60000);
     expect("glass: closure", &b.closure[0], 0);
@@ -78,10 +89,12 @@ TEST(clear_glass_absorbs_nothing_and_black_all_of_the_rest)
 
 TEST(an_open_scene_under_a_sky_balances)
 {
-    struct world w = world_of(WORLD "LightSource \"infinite\" \"float scale\" 2\n" GREY "Shape \"sphere\" \"float radius\" 1\n");
+    struct world w =
+        world_of(WORLD "LightSource \"infinite\" \"float scale\" 2\n" GREY "Shape \"sphere\" \"float radius\" 1\n");
     struct sr_arena arena = {0};
     struct sr_balance b = balance_of(&w, &arena, 60000);
-    // the sphere around the box of a sphere has the radius sqrt(3); a convex body of area A receives pi L A and returns half
+    // the sphere around the box of a sphere has the radius sqrt(3); a convex body of area A receives pi L A and returns
+    // half
     expect("sky: what enters the scene", &b.emitted[0], 4 * pi * pi * 3 * 2);
     expect("sky: absorbed by a grey ball", &b.absorbed[0], 0.5 * pi * 2 * 4 * pi);
     expect("sky: closure", &b.closure[0], 0);
@@ -136,7 +149,8 @@ static void expect_table(const char *what, const struct sr_intensity_table *t, d
             ++cells;
         }
     }
-    printf("  %-28s I(0) = %.4g +- %.1g, %d cells: worst |z| %.2f, chi2 p %.3g\n", what, (double)t->I[0], (double)t->u[0], cells, worst, sr_chi2_p(chi2, cells));
+    printf("  %-28s I(0) = %.4g +- %.1g, %d cells: worst |z| %.2f, chi2 p %.3g\n", what, (double)t->I[0],
+           (double)t->u[0], cells, worst, sr_chi2_p(chi2, cells));
     EXPECT(worst < 5.5 && sr_chi2_p(chi2, cells) > 1e-6);
 }
 
@@ -159,24 +173,31 @@ TEST(a_lambertian_lamp_of_hundred_lumens_has_31_83_cd_on_axis)
 {
 #define METER "#@ Meter \"intensity\" \"float cstep\" 45 \"float gammastep\" 10\n"
     struct sr_arena arena = {0};
-    struct world w = world_of(WORLD METER "AttributeBegin AreaLightSource \"diffuse\" \"float power\" 100\n" BLACK "Rotate 180 1 0 0 Shape \"disk\" \"float radius\" .5 AttributeEnd\n");
+    struct world w = world_of(WORLD METER "AttributeBegin AreaLightSource \"diffuse\" \"float power\" 100\n" BLACK
+                                          "Rotate 180 1 0 0 Shape \"disk\" \"float radius\" .5 AttributeEnd\n");
     struct sr_intensity_table t = table_of(&w, &arena, 200000);
     expect_table("Lambertian disk", &t, lambertian);
     expect("Lambertian disk: flux", &t.flux, 100);
     world_free(&w);
 
-    w = world_of(WORLD METER "LightSource \"spot\" \"float scale\" 10 \"float coneangle\" 60 \"float conedeltaangle\" 30 \"point3 from\" [0 0 1] \"point3 to\" [0 0 -1]\n");
+    w = world_of(
+        WORLD METER
+        "LightSource \"spot\" \"float scale\" 10 \"float coneangle\" 60 \"float conedeltaangle\" 30 \"point3 from\" [0 0 1] \"point3 to\" [0 0 -1]\n");
     t = table_of(&w, &arena, 200000);
     expect_table("spot", &t, spot);
     world_free(&w);
 
-    w = world_of(WORLD METER "LightSource \"point\" \"float power\" 100\nMaterial \"thindielectric\" \"float eta\" 1 Shape \"sphere\" \"float radius\" 1\n");
+    w = world_of(
+        WORLD METER
+        "LightSource \"point\" \"float power\" 100\nMaterial \"thindielectric\" \"float eta\" 1 Shape \"sphere\" \"float radius\" 1\n");
     t = table_of(&w, &arena, 200000);
     expect_table("point in a shell of air", &t, even);
     world_free(&w);
 
     // a perfect diffuser under a point throws half of its light back up
-    w = world_of(WORLD METER "LightSource \"point\" \"float power\" 100 \"point3 from\" [0 0 .001]\nMaterial \"diffuse\" \"spectrum reflectance\" [360 1 830 1] Shape \"disk\" \"float radius\" 50\n");
+    w = world_of(
+        WORLD METER
+        "LightSource \"point\" \"float power\" 100 \"point3 from\" [0 0 .001]\nMaterial \"diffuse\" \"spectrum reflectance\" [360 1 830 1] Shape \"disk\" \"float radius\" 50\n");
     t = table_of(&w, &arena, 200000);
     expect("point over white: flux", &t.flux, 100);
     double up = 0;
@@ -191,7 +212,8 @@ TEST(a_lambertian_lamp_of_hundred_lumens_has_31_83_cd_on_axis)
 TEST(skies_are_no_luminaires)
 {
     struct sr_arena arena = {0};
-    struct world w = world_of(WORLD METER "LightSource \"infinite\" \"float scale\" 2\n" GREY "Shape \"sphere\" \"float radius\" 1\n");
+    struct world w = world_of(WORLD METER "LightSource \"infinite\" \"float scale\" 2\n" GREY
+                                          "Shape \"sphere\" \"float radius\" 1\n");
     struct sr_measure_settings s = {.samples = 1600, .system = SR_PHOTOPIC};
     struct sr_intensity_table t;
     struct sr_error error = {0};
@@ -206,21 +228,28 @@ TEST(skies_are_no_luminaires)
 TEST(meters_read_the_same_by_paths_from_the_lights)
 {
     static const char *const meters[] = {
-        "\"irradiance\" \"point3 p\" [.3 -.999 .2] \"normal n\" [0 1 0]", "\"cylindrical\" \"point3 p\" [.3 0 .2] \"vector3 axis\" [0 1 0]",
-        "\"spherical\" \"point3 p\" [.3 0 .2]", "\"flux\" \"point3 p\" [-.5 -.99 -.5] \"vector3 u\" [0 0 1] \"vector3 v\" [1 0 0]",
+        "\"irradiance\" \"point3 p\" [.3 -.999 .2] \"normal n\" [0 1 0]",
+        "\"cylindrical\" \"point3 p\" [.3 0 .2] \"vector3 axis\" [0 1 0]",
+        "\"spherical\" \"point3 p\" [.3 0 .2]",
+        "\"flux\" \"point3 p\" [-.5 -.99 -.5] \"vector3 u\" [0 0 1] \"vector3 v\" [1 0 0]",
     };
     for (size_t i = 0; i < sizeof meters / sizeof *meters; ++i) {
-        struct world w = world_of("LookAt 0 0 -3  0 0 0  0 1 0 Camera \"perspective\" Film \"rgb\" \"string filename\" \"a.exr\" Integrator \"path\" \"integer maxdepth\" 6\nWorldBegin\n#@ Meter %s\n"
+        struct world w = world_of(
+            "LookAt 0 0 -3  0 0 0  0 1 0 Camera \"perspective\" Film \"rgb\" \"string filename\" \"a.exr\" Integrator \"path\" \"integer maxdepth\" 6\nWorldBegin\n#@ Meter %s\n"
             "Material \"diffuse\" \"spectrum reflectance\" [360 .6 830 .6]\n"
             "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 -1  1 -1 -1  -1 -1 1  1 -1 1]\nShape \"bilinearmesh\" \"point3 P\" [-1 1 -1  1 1 -1  -1 1 1  1 1 1]\n"
             "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 1  1 -1 1  -1 1 1  1 1 1]\n"
             "AttributeBegin AreaLightSource \"diffuse\" \"float power\" 50 Shape \"bilinearmesh\" \"point3 P\" [-.3 .9 -.3  .3 .9 -.3  -.3 .9 .3  .3 .9 .3] AttributeEnd\n"
-            "LightSource \"point\" \"point3 from\" [-.6 .2 -.5] \"float power\" 20\n", meters[i]);
+            "LightSource \"point\" \"point3 from\" [-.6 .2 -.5] \"float power\" 20\n",
+            meters[i]);
         static const char *const names[] = {"path", "lightpath", "bdpt"};
         struct sr_quantity by[3];
         struct sr_arena arena = {0};
         for (int k = 0; k < 3; ++k) {
-            struct sr_measure_settings s = {.samples = 16 * samples(k == 2 ? 400 : 1600), .replicates = 16, .system = SR_PHOTOPIC, .stream = (uint32_t)k};
+            struct sr_measure_settings s = {.samples = 16 * samples(k == 2 ? 400 : 1600),
+                                            .replicates = 16,
+                                            .system = SR_PHOTOPIC,
+                                            .stream = (uint32_t)k};
             struct sr_measurement m;
             struct sr_error error = {0};
             struct sr_render_job job = w.job;
@@ -228,7 +257,8 @@ TEST(meters_read_the_same_by_paths_from_the_lights)
             self[0] = 6; // maxdepth is the first of all three
             EXPECT(w.job.integrator.model->params[0].offset == 0);
             job.integrator = (struct sr_integrator){sr_integrator_model_find(names[k]), self};
-            EXPECT(job.integrator.model->params[0].offset == 0 && strcmp(job.integrator.model->params[0].name, "maxdepth") == 0);
+            EXPECT(job.integrator.model->params[0].offset == 0 &&
+                   strcmp(job.integrator.model->params[0].name, "maxdepth") == 0);
             if (sr_measure(&job, &w.scene.meters[0], &s, &arena, &m, &error) != SR_OK)
                 test_fail(__FILE__, __LINE__, "%s", error.text);
             by[k] = m.value[SR_PHOTOPIC];

@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* Spectra, colour and photometry end to end: a glowing sheet in front of a camera, and luminous against radiant quantities. */
+/* Spectra, colour and photometry end to end: a glowing sheet in front of a camera, and luminous against radiant
+ * quantities. */
 #include "analytic/analytic.h"
 
 static struct world sheet(const char *spectrum)
 {
-    return world_of("Integrator \"path\" \"integer maxdepth\" 0\nCamera \"perspective\" \"float fov\" 10\n"
-                    "Film \"rgb\" \"integer xresolution\" 1 \"integer yresolution\" 1\nWorldBegin\n"
-                    "AreaLightSource \"diffuse\" %s \"float scale\" 1 \"bool twosided\" true\nTranslate 0 0 1 Shape \"disk\" \"float radius\" 100\n", spectrum);
+    return world_of(
+        "Integrator \"path\" \"integer maxdepth\" 0\nCamera \"perspective\" \"float fov\" 10\n"
+        "Film \"rgb\" \"integer xresolution\" 1 \"integer yresolution\" 1\nWorldBegin\n"
+        "AreaLightSource \"diffuse\" %s \"float scale\" 1 \"bool twosided\" true\nTranslate 0 0 1 Shape \"disk\" \"float radius\" 100\n",
+        spectrum);
 }
 
 static const char *spectrum_of(const struct row *row)
@@ -15,12 +18,16 @@ static const char *spectrum_of(const struct row *row)
     if (row->a > 0)
         snprintf(text, sizeof text, "\"blackbody L\" %.9g", row->a);
     else
-        snprintf(text, sizeof text, "\"spectrum L\" %s", row->a == 0 ? "[360 1 830 1]" : row->a == -1 || row->a == -4 ? "\"stdillum-A\"" : row->a == -2 ? "\"stdillum-D65\"" : "\"stdillum-D50\"");
+        snprintf(text, sizeof text, "\"spectrum L\" %s",
+                 row->a == 0                    ? "[360 1 830 1]"
+                 : row->a == -1 || row->a == -4 ? "\"stdillum-A\""
+                 : row->a == -2                 ? "\"stdillum-D65\""
+                                                : "\"stdillum-D50\"");
     return text;
 }
 
-/* Our illuminant A is CIE's formula; the catalogue's is a table of 5 nm between which it interpolates. The table's own error,
- * the difference to I8 (which is the formula's), is added to the uncertainty. */
+/* Our illuminant A is CIE's formula; the catalogue's is a table of 5 nm between which it interpolates. The table's own
+ * error, the difference to I8 (which is the formula's), is added to the uncertainty. */
 static struct estimate or_practical(const struct row *row, struct estimate e)
 {
     if (row->a == -1)
@@ -37,20 +44,28 @@ static void chromaticity(const struct row *row)
     struct estimate sum = pixel_mean(&w.job, 0, 0, n, (const double[]){1, 1, 1});
     // the two have the same samples; adding their relative errors is the upper bound
     double ratio = part.mean / sum.mean;
-    check(row, "film", or_practical(row, (struct estimate){ratio, ratio * (part.error / part.mean + sum.error / sum.mean), part.degrees}), GOAL);
+    check(row, "film",
+          or_practical(row,
+                       (struct estimate){ratio, ratio * (part.error / part.mean + sum.error / sum.mean), part.degrees}),
+          GOAL);
     world_free(&w);
 }
 static void tristimulus(const struct row *row)
 {
     struct world w = sheet(spectrum_of(row));
     double n = 512;
-    struct estimate part = pixel_mean(&w.job, 0, 0, n, (const double[]){row->b == 0, 0, row->b == 2}), Y = pixel_mean(&w.job, 0, 0, n, (const double[]){0, 1, 0});
+    struct estimate part = pixel_mean(&w.job, 0, 0, n, (const double[]){row->b == 0, 0, row->b == 2}),
+                    Y = pixel_mean(&w.job, 0, 0, n, (const double[]){0, 1, 0});
     double ratio = 100 * part.mean / Y.mean;
-    check(row, "film", or_practical(row, (struct estimate){ratio, ratio * (part.error / part.mean + Y.error / Y.mean), part.degrees}), GOAL);
+    check(
+        row, "film",
+        or_practical(row, (struct estimate){ratio, ratio * (part.error / part.mean + Y.error / Y.mean), part.degrees}),
+        GOAL);
     world_free(&w);
 }
 
-/* Luminous over radiant exitance of a blackbody. The meter counts 400 to 700 nm; I5 says which part of the whole that is. */
+/* Luminous over radiant exitance of a blackbody. The meter counts 400 to 700 nm; I5 says which part of the whole that
+ * is. */
 static struct sr_irradiance measured(struct sr_render_job job, float lo, float hi)
 {
     job.lambda = (struct sr_lambda_range){lo, hi};
@@ -62,16 +77,19 @@ static void efficacy(const struct row *row)
     struct world w = sheet("\"blackbody L\" 2856");
     struct sr_irradiance all = measured(w.job, SR_LAMBDA_MIN, SR_LAMBDA_MAX), seen = measured(w.job, 400, 700);
     double K = all.E_v / seen.E_e * part_400_700 * row->b;
-    check(row, "meter", (struct estimate){K, K * (all.E_v_error / all.E_v + seen.E_e_error / seen.E_e), all.degrees}, GOAL);
+    check(row, "meter", (struct estimate){K, K * (all.E_v_error / all.E_v + seen.E_e_error / seen.E_e), all.degrees},
+          GOAL);
     world_free(&w);
 }
-/* The part of 400 to 700 nm, of that which the meter sees: its ratio to the part of 500 to 600 nm is left, and is known from I2's formula. */
+/* The part of 400 to 700 nm, of that which the meter sees: its ratio to the part of 500 to 600 nm is left, and is known
+ * from I2's formula. */
 static double planck_part(double T, double lo, double hi)
 {
     double x[64], weight[64], sum = 0;
     sr_gauss_legendre(64, lo * 1e-9, hi * 1e-9, x, weight);
     for (int i = 0; i < 64; ++i)
-        sum += weight[i] * 2 * 6.62607015e-34 * 299792458. * 299792458. / pow(x[i], 5) / expm1(6.62607015e-34 * 299792458. / (x[i] * 1.380649e-23 * T));
+        sum += weight[i] * 2 * 6.62607015e-34 * 299792458. * 299792458. / pow(x[i], 5) /
+               expm1(6.62607015e-34 * 299792458. / (x[i] * 1.380649e-23 * T));
     return sum / (5.67037441918e-8 * pow(T, 4) / (double)SR_PI);
 }
 static void part_of_planck(const struct row *row)
@@ -81,7 +99,9 @@ static void part_of_planck(const struct row *row)
     struct world w = sheet(text);
     struct sr_irradiance wide = measured(w.job, 400, 700), narrow = measured(w.job, 500, 600);
     double part = wide.E_e / narrow.E_e * planck_part(row->a, 500, 600);
-    check(row, "meter", (struct estimate){part, part * (wide.E_e_error / wide.E_e + narrow.E_e_error / narrow.E_e), wide.degrees}, GOAL);
+    check(row, "meter",
+          (struct estimate){part, part * (wide.E_e_error / wide.E_e + narrow.E_e_error / narrow.E_e), wide.degrees},
+          GOAL);
     world_free(&w);
 }
 /* Nearly monochromatic light: lumens a watt, times b watts. */
@@ -90,7 +110,8 @@ static void monochromatic(const struct row *row)
     struct world w = sheet("\"spectrum L\" [360 1 830 1]");
     struct sr_irradiance E = measured(w.job, (float)row->a - 0.02f, (float)row->a + 0.02f);
     double lumens = E.E_v / E.E_e * row->b;
-    check(row, "meter", (struct estimate){lumens, lumens * (E.E_v_error / E.E_v + E.E_e_error / E.E_e), E.degrees}, GOAL);
+    check(row, "meter", (struct estimate){lumens, lumens * (E.E_v_error / E.E_v + E.E_e_error / E.E_e), E.degrees},
+          GOAL);
     world_free(&w);
 }
 

@@ -8,7 +8,8 @@
 #define PLATE "Shape \"bilinearmesh\" \"point3 P\" [-1 -1 0 1 -1 0 -1 1 0 1 1 0]\n"
 #define TO_PLATE "#@ Meter \"radiance\" \"point3 p\" [-0.5 0 0.5] \"point3 to\" [0 0 0]\n"
 
-static sr_status read_first(struct world *w, const struct sr_measure_settings *settings, struct sr_measurement *m, struct sr_error *error)
+static sr_status read_first(struct world *w, const struct sr_measure_settings *settings, struct sr_measurement *m,
+                            struct sr_error *error)
 {
     struct sr_arena arena = {0};
     EXPECT_EQUAL_INT(w->scene.meter_count, 1);
@@ -19,7 +20,9 @@ static sr_status read_first(struct world *w, const struct sr_measure_settings *s
 
 static struct sr_quantity by_quadrature(enum sr_system system, int depth, double tolerance, const char *scene)
 {
-    struct world w = world_of("Integrator \"quadrature\" \"integer maxdepth\" %d \"float tolerance\" %g\nWorldBegin\n%s", depth, tolerance, scene);
+    struct world w =
+        world_of("Integrator \"quadrature\" \"integer maxdepth\" %d \"float tolerance\" %g\nWorldBegin\n%s", depth,
+                 tolerance, scene);
     struct sr_measure_settings s = {.system = SR_PHOTOPIC};
     struct sr_measurement m = {.remark_count = 0};
     struct sr_error error = {0};
@@ -37,28 +40,50 @@ struct known {
     int depth;
 };
 
-static const struct known closed_forms[] = { // values and sources as in validation/cases.tsv
-    {"A1: point", "LightSource \"point\" \"point3 from\" [0 0 2] \"float power\" 1000\n" AT_ORIGIN, 19.8943678864869, 0},
-    {"A2: point", "LightSource \"point\" \"point3 from\" [-4 0 3] \"float power\" 1000\n" AT_ORIGIN, 1.90985931710274, 0},
-    {"A3: distant", "LightSource \"distant\" \"float illuminance\" 1000 \"point3 from\" [0.866025404 0 0.5] \"point3 to\" [0 0 0]\n" AT_ORIGIN, 500, 0},
+static const struct known closed_forms[] = {
+    // values and sources as in validation/cases.tsv
+    {"A1: point", "LightSource \"point\" \"point3 from\" [0 0 2] \"float power\" 1000\n" AT_ORIGIN, 19.8943678864869,
+     0},
+    {"A2: point", "LightSource \"point\" \"point3 from\" [-4 0 3] \"float power\" 1000\n" AT_ORIGIN, 1.90985931710274,
+     0},
+    {"A3: distant",
+     "LightSource \"distant\" \"float illuminance\" 1000 \"point3 from\" [0.866025404 0 0.5] \"point3 to\" [0 0 0]\n" AT_ORIGIN,
+     500, 0},
     {"B1: disk", DARK_DISK AT_ORIGIN, 0.628318530717959, 0},
-    {"B2: disk", DARK_DISK "#@ Meter \"irradiance\" \"point3 p\" [1.5 0 0] \"normal n\" [0 0 1]\n", 0.321335102751701, 0},
-    {"B4: disk", DARK_DISK "#@ Meter \"irradiance\" \"point3 p\" [1.5 0 0] \"normal n\" [-0.573576436 0 0.819152044]\n", 0.381493863440674, 0},
-    {"B5: sphere", BLACK GLOW "AttributeBegin Translate 1.92836283 0 2.29813333 Shape \"sphere\" \"float radius\" 1 AttributeEnd\n" AT_ORIGIN, 0.267399954980652, 0},
-    {"B6.90: half a sphere", BLACK GLOW "AttributeBegin Translate 2 0 0 Shape \"sphere\" \"float radius\" 1 AttributeEnd\n" AT_ORIGIN, 0.0905860737060797, 0},
-    {"B7: rectangle", BLACK GLOW "ReverseOrientation Shape \"bilinearmesh\" \"point3 P\" [0 0 1 2 0 1 0 1 1 2 1 1]\n" AT_ORIGIN, 0.525824101541547, 0},
-    {"B8: rectangle", BLACK GLOW "ReverseOrientation Shape \"bilinearmesh\" \"point3 P\" [-0.5 -0.5 1 0.5 -0.5 1 -0.5 0.5 1 0.5 0.5 1]\n" AT_ORIGIN,
+    {"B2: disk", DARK_DISK "#@ Meter \"irradiance\" \"point3 p\" [1.5 0 0] \"normal n\" [0 0 1]\n", 0.321335102751701,
+     0},
+    {"B4: disk", DARK_DISK "#@ Meter \"irradiance\" \"point3 p\" [1.5 0 0] \"normal n\" [-0.573576436 0 0.819152044]\n",
+     0.381493863440674, 0},
+    {"B5: sphere",
+     BLACK GLOW
+     "AttributeBegin Translate 1.92836283 0 2.29813333 Shape \"sphere\" \"float radius\" 1 AttributeEnd\n" AT_ORIGIN,
+     0.267399954980652, 0},
+    {"B6.90: half a sphere",
+     BLACK GLOW "AttributeBegin Translate 2 0 0 Shape \"sphere\" \"float radius\" 1 AttributeEnd\n" AT_ORIGIN,
+     0.0905860737060797, 0},
+    {"B7: rectangle",
+     BLACK GLOW "ReverseOrientation Shape \"bilinearmesh\" \"point3 P\" [0 0 1 2 0 1 0 1 1 2 1 1]\n" AT_ORIGIN,
+     0.525824101541547, 0},
+    {"B8: rectangle",
+     BLACK GLOW
+     "ReverseOrientation Shape \"bilinearmesh\" \"point3 P\" [-0.5 -0.5 1 0.5 -0.5 1 -0.5 0.5 1 0.5 0.5 1]\n" AT_ORIGIN,
      0.752274688454107, 0},
-    {"B10: triangle", BLACK GLOW_BOTH "Shape \"trianglemesh\" \"point3 P\" [1 0 1 -1 2 1.5 -1 -1 2] \"integer indices\" [0 1 2]\n" AT_ORIGIN, 0.875254739837253, 0},
+    {"B10: triangle",
+     BLACK GLOW_BOTH
+     "Shape \"trianglemesh\" \"point3 P\" [1 0 1 -1 2 1.5 -1 -1 2] \"integer indices\" [0 1 2]\n" AT_ORIGIN,
+     0.875254739837253, 0},
     {"B12.0: sky", "LightSource \"infinite\" \"float scale\" 1\n" AT_ORIGIN, 3.14159265358979, 0},
-    {"a sum of two", "LightSource \"infinite\" \"float scale\" 1\nLightSource \"point\" \"point3 from\" [0 0 2] \"float power\" 1000\n" AT_ORIGIN,
+    {"a sum of two",
+     "LightSource \"infinite\" \"float scale\" 1\nLightSource \"point\" \"point3 from\" [0 0 2] \"float power\" 1000\n" AT_ORIGIN,
      3.14159265358979 + 19.8943678864869, 0},
     {"a ray", DARK_DISK "#@ Meter \"radiance\" \"point3 p\" [0 0 0] \"vector3 d\" [0 0 1]\n", 1, 0},
-    {"a grey plate below a disk: rho E / pi", GREY PLATE DARK_DISK TO_PLATE, 0.5 * 0.628318530717959 / 3.14159265358979, 1},
+    {"a grey plate below a disk: rho E / pi", GREY PLATE DARK_DISK TO_PLATE, 0.5 * 0.628318530717959 / 3.14159265358979,
+     1},
     {"a grey plate below the sky", GREY PLATE "LightSource \"infinite\" \"float scale\" 1\n" TO_PLATE, 0.5, 1},
     {"a plate that lets half through, sky on both sides",
      "Material \"diffusetransmission\" \"spectrum reflectance\" [360 0.25 830 0.25] \"spectrum transmittance\" [360 0.5 830 0.5]\n" PLATE
-     "LightSource \"infinite\" \"float scale\" 1\n" TO_PLATE, 0.75, 1},
+     "LightSource \"infinite\" \"float scale\" 1\n" TO_PLATE,
+     0.75, 1},
 };
 
 TEST(quadrature_meets_closed_forms_and_bounds_its_error)
@@ -76,13 +101,17 @@ TEST(quadrature_meets_closed_forms_and_bounds_its_error)
 }
 
 static const struct known edged[] = {
-    // 1/pi INTEGRAL sin^2 theta dtheta dphi from the disk's edge on: pi less alpha - sin alpha cos alpha, tan alpha = 1/2
-    {"a cylinder below a black disk", "LightSource \"infinite\" \"float scale\" 1\n" BLACK
+    // 1/pi INTEGRAL sin^2 theta dtheta dphi from the disk's edge on: pi less alpha - sin alpha cos alpha, tan alpha =
+    // 1/2
+    {"a cylinder below a black disk",
+     "LightSource \"infinite\" \"float scale\" 1\n" BLACK
      "Shape \"disk\" \"float height\" 2 \"float radius\" 1\n#@ Meter \"cylindrical\" \"vector3 axis\" [0 0 1]\n",
      3.14159265358979 - (0.463647609000806 - 0.4), 0},
-    {"a cone within a disk", DARK_DISK "#@ Meter \"radiance\" \"point3 p\" [0 0 0] \"vector3 d\" [0 0 1] \"float halfangle\" 20\n", 1, 0},
+    {"a cone within a disk",
+     DARK_DISK "#@ Meter \"radiance\" \"point3 p\" [0 0 0] \"vector3 d\" [0 0 1] \"float halfangle\" 20\n", 1, 0},
     {"a disk within a cone: its solid angle over the cone's",
-     DARK_DISK "#@ Meter \"radiance\" \"point3 p\" [0 0 0] \"vector3 d\" [0 0 1] \"float halfangle\" 60\n", 2 * (1 - 0.894427190999916), 0},
+     DARK_DISK "#@ Meter \"radiance\" \"point3 p\" [0 0 0] \"vector3 d\" [0 0 1] \"float halfangle\" 60\n",
+     2 * (1 - 0.894427190999916), 0},
 };
 
 /* Where the integrand has an edge the bound must widen, and hold. */
@@ -107,11 +136,13 @@ static const char glossy[] = "Material \"conductor\" \"float roughness\" 0.3\n" 
 TEST(quadrature_agrees_with_path_tracing_on_a_glossy_plate)
 {
     struct world w = world_of("Integrator \"path\" \"integer maxdepth\" 1\nWorldBegin\n%s", glossy);
-    struct sr_measure_settings s = {.samples = (uint64_t)samples(8192) * REPLICATES, .replicates = REPLICATES, .system = SR_PHOTOPIC};
+    struct sr_measure_settings s = {
+        .samples = (uint64_t)samples(8192) * REPLICATES, .replicates = REPLICATES, .system = SR_PHOTOPIC};
     struct sr_measurement m;
     struct sr_error error = {0};
     EXPECT_EQUAL_INT(read_first(&w, &s, &m, &error), SR_OK);
-    static const enum sr_system systems[] = {SR_PHOTOPIC, SR_RADIOMETRIC}; // the latter sees the ends of the wavelengths
+    static const enum sr_system systems[] = {SR_PHOTOPIC,
+                                             SR_RADIOMETRIC}; // the latter sees the ends of the wavelengths
     for (int i = 0; i < 2; ++i) {
         struct sr_quantity q = by_quadrature(systems[i], 1, FINE, glossy);
         const struct sr_quantity *p = &m.value[systems[i]];
@@ -138,7 +169,8 @@ static const struct {
 TEST(quadrature_refuses_what_has_more_dimensions)
 {
     for (size_t i = 0; i < sizeof refused / sizeof *refused; ++i) {
-        struct world w = world_of("Integrator \"quadrature\" \"integer maxdepth\" %d\nWorldBegin\n%s", refused[i].depth, refused[i].scene);
+        struct world w = world_of("Integrator \"quadrature\" \"integer maxdepth\" %d\nWorldBegin\n%s", refused[i].depth,
+                                  refused[i].scene);
         struct sr_measure_settings s = {.system = SR_PHOTOPIC};
         struct sr_measurement m;
         struct sr_error error = {0};

@@ -7,24 +7,28 @@ static const double origin[3] = {0, 0, 0}, up[3] = {0, 0, 1};
 
 static void point_normal(const struct row *row)
 {
-    check_irradiance(row, origin, up, "LightSource \"point\" \"point3 from\" [0 0 2] \"float power\" 1000\n", (struct effort){.path = 256, .lights = 256}, 1);
+    check_irradiance(row, origin, up, "LightSource \"point\" \"point3 from\" [0 0 2] \"float power\" 1000\n",
+                     (struct effort){.path = 256, .lights = 256}, 1);
 }
 
 static void point_tilted(const struct row *row)
 {
-    check_irradiance(row, (const double[]){4, 0, 0}, up, "LightSource \"point\" \"point3 from\" [0 0 3] \"float power\" 1000\n",
+    check_irradiance(row, (const double[]){4, 0, 0}, up,
+                     "LightSource \"point\" \"point3 from\" [0 0 3] \"float power\" 1000\n",
                      (struct effort){.path = 256, .lights = 256}, 1);
 }
 
 static void distant(const struct row *row)
 {
     char text[256];
-    snprintf(text, sizeof text, "LightSource \"distant\" \"float illuminance\" 1000 \"point3 from\" [%.9g 0 %.9g] \"point3 to\" [0 0 0]\n",
+    snprintf(text, sizeof text,
+             "LightSource \"distant\" \"float illuminance\" 1000 \"point3 from\" [%.9g 0 %.9g] \"point3 to\" [0 0 0]\n",
              sin(row->a * DEGREE), cos(row->a * DEGREE));
     check_irradiance(row, origin, up, text, (struct effort){.path = 256, .lights = 256}, 1);
 }
 
-/* Points on the cap of a sphere around the lamp, where all of its light arrives: flux = area of the cap times mean E. */
+/* Points on the cap of a sphere around the lamp, where all of its light arrives: flux = area of the cap times mean E.
+ */
 static const double cap_cos = 0.85;
 static struct drawn onto_cap(const void *context, sr_vec2 u, sr_vec2 v)
 {
@@ -46,12 +50,17 @@ static void spot_flux(const struct row *row)
     static const char *const ways[] = {"path", "simplepath"};
     for (int plane = 0; plane < 2; ++plane)
         for (int i = 0; i < 2; ++i) {
-            struct world w = world_of("Integrator \"%s\" \"integer maxdepth\" 1\nWorldBegin\n" GREY
-                                      "LightSource \"spot\" \"float scale\" 100 \"float coneangle\" 30 \"float conedeltaangle\" 10 \"point3 to\" [0 0 1]\n%s",
-                                      ways[i], plane ? "Shape \"disk\" \"float height\" 1" : "Shape \"sphere\" \"float radius\" 1");
+            struct world w = world_of(
+                "Integrator \"%s\" \"integer maxdepth\" 1\nWorldBegin\n" GREY
+                "LightSource \"spot\" \"float scale\" 100 \"float coneangle\" 30 \"float conedeltaangle\" 10 \"point3 to\" [0 0 1]\n%s",
+                ways[i], plane ? "Shape \"disk\" \"float height\" 1" : "Shape \"sphere\" \"float radius\" 1");
             double area = plane ? (double)SR_PI * 0.62 * 0.62 : 2 * (double)SR_PI * (1 - cap_cos);
             struct estimate L = mean_luminance(&w.job, plane ? onto_plane : onto_cap, NULL, 4096);
-            check(row, plane ? (i ? "lights/pl." : "path/plane") : i ? "lights" : "path", scaled(L, (double)SR_PI / RECEIVER_RHO * area), GOAL);
+            check(row,
+                  plane ? (i ? "lights/pl." : "path/plane")
+                  : i   ? "lights"
+                        : "path",
+                  scaled(L, (double)SR_PI / RECEIVER_RHO * area), GOAL);
             world_free(&w);
         }
 }
@@ -65,20 +74,26 @@ static const char disk_above[] = BLACK GLOW "ReverseOrientation Shape \"disk\" \
 
 static void disk(const struct row *row)
 {
-    check_irradiance(row, (const double[]){row->a, 0, 0}, (const double[]){-sin(row->b * DEGREE), 0, cos(row->b * DEGREE)}, disk_above, row->a == 0 ? all : row->b == 0 ? small : usual, 1);
+    check_irradiance(row, (const double[]){row->a, 0, 0},
+                     (const double[]){-sin(row->b * DEGREE), 0, cos(row->b * DEGREE)}, disk_above,
+                     row->a == 0   ? all
+                     : row->b == 0 ? small
+                                   : usual,
+                     1);
 }
 
 static void sphere_at(const struct row *row, double distance, double tilt, double radius, struct effort n)
 {
     char text[512];
-    snprintf(text, sizeof text, BLACK GLOW "Translate %.9g 0 %.9g Shape \"sphere\" \"float radius\" %.9g\n", distance * sin(tilt * DEGREE),
-             distance * cos(tilt * DEGREE), radius);
+    snprintf(text, sizeof text, BLACK GLOW "Translate %.9g 0 %.9g Shape \"sphere\" \"float radius\" %.9g\n",
+             distance * sin(tilt * DEGREE), distance * cos(tilt * DEGREE), radius);
     check_irradiance(row, origin, up, text, n, 1);
 }
 
 static void sphere(const struct row *row)
 {
-    sphere_at(row, row->a, row->b, 1, row->b == 90 ? (struct effort){.meter = 65536, .path = 2048, .lights = 2048} : small);
+    sphere_at(row, row->a, row->b, 1,
+              row->b == 90 ? (struct effort){.meter = 65536, .path = 2048, .lights = 2048} : small);
 }
 
 static void cap(const struct row *row)
@@ -91,15 +106,18 @@ static void rectangle(const struct row *row)
 {
     char text[2048];
     double x0 = row->a, x1 = row->b, y0 = row->a, y1 = x0 < 0 ? x1 : 1;
-    static const char *const shapes[] = {"bilinearmesh\" \"integer indices\" [0 1 2 3]", "trianglemesh\" \"integer indices\" [0 1 2 2 1 3]"};
+    static const char *const shapes[] = {"bilinearmesh\" \"integer indices\" [0 1 2 3]",
+                                         "trianglemesh\" \"integer indices\" [0 1 2 2 1 3]"};
     for (int i = 0; i < 2; ++i) {
-        snprintf(text, sizeof text, BLACK GLOW "ReverseOrientation Shape \"%s \"point3 P\" [%g %g 1 %g %g 1 %g %g 1 %g %g 1]\n", shapes[i], x0, y0, x1, y0,
-                 x0, y1, x1, y1);
+        snprintf(text, sizeof text,
+                 BLACK GLOW "ReverseOrientation Shape \"%s \"point3 P\" [%g %g 1 %g %g 1 %g %g 1 %g %g 1]\n", shapes[i],
+                 x0, y0, x1, y0, x0, y1, x1, y1);
         check_irradiance(row, origin, up, text, i ? all : (struct effort){.path = 2048, .lights = 2048}, 1);
     }
 }
 
-static const char triangle_text[] = BLACK GLOW_BOTH "Shape \"trianglemesh\" \"point3 P\" [1 0 1 -1 2 1.5 -1 -1 2] \"integer indices\" [0 1 2]\n";
+static const char triangle_text[] =
+    BLACK GLOW_BOTH "Shape \"trianglemesh\" \"point3 P\" [1 0 1 -1 2 1.5 -1 -1 2] \"integer indices\" [0 1 2]\n";
 
 static void triangle(const struct row *row)
 {
@@ -114,8 +132,10 @@ static void light_vector(const struct row *row)
         for (int axis = 0; axis < 3; ++axis) {
             double n[3] = {0};
             n[axis] = k ? -1 : 1;
-            struct world w = world_of("Integrator \"path\" \"integer maxdepth\" 1\n%s%s", receiver_text(origin, n), triangle_text);
-            side[k][axis] = scaled(pixel_mean(&w.job, 0, 0, 4096, (const double[]){0, 1, 0}), (double)SR_PI / RECEIVER_RHO);
+            struct world w =
+                world_of("Integrator \"path\" \"integer maxdepth\" 1\n%s%s", receiver_text(origin, n), triangle_text);
+            side[k][axis] =
+                scaled(pixel_mean(&w.job, 0, 0, 4096, (const double[]){0, 1, 0}), (double)SR_PI / RECEIVER_RHO);
             world_free(&w);
         }
     for (int axis = 0; axis < 3; ++axis) {
@@ -131,8 +151,10 @@ static void light_vector(const struct row *row)
 static void tilted(const struct row *row)
 {
     const double n[3] = {sin(row->a * DEGREE), 0, cos(row->a * DEGREE)};
-    static const char sky[] = "LightSource \"infinite\" \"float scale\" 1\n" BLACK "Shape \"disk\" \"float height\" -0.1 \"float radius\" 1e5\n";
-    static const char plane[] = BLACK GLOW "ReverseOrientation Shape \"disk\" \"float height\" 0.1 \"float radius\" 1e5\n";
+    static const char sky[] = "LightSource \"infinite\" \"float scale\" 1\n" BLACK
+                              "Shape \"disk\" \"float height\" -0.1 \"float radius\" 1e5\n";
+    static const char plane[] =
+        BLACK GLOW "ReverseOrientation Shape \"disk\" \"float height\" 0.1 \"float radius\" 1e5\n";
     check_irradiance(row, origin, n, sky, (struct effort){.path = 65536}, 1);
     check_irradiance(row, origin, n, plane, (struct effort){.meter = 32768}, 1);
 }
@@ -141,9 +163,11 @@ static void tilted(const struct row *row)
 static void over_white_ground(const struct row *row)
 {
     const double n[3] = {sin(row->a * DEGREE), 0, cos(row->a * DEGREE)};
-    struct world w = world_of("Integrator \"path\" \"integer maxdepth\" 1\nWorldBegin\nLightSource \"infinite\" \"float scale\" 1\n"
-                              "Material \"diffuse\" \"spectrum reflectance\" [360 1 830 1] Shape \"disk\" \"float height\" -0.1 \"float radius\" 1e5\n");
-    struct sr_irradiance E = sr_render_irradiance(&w.job, (sr_vec3){0, 0, 0}, (sr_vec3){(float)n[0], 0, (float)n[2]}, samples(16384), REPLICATES);
+    struct world w = world_of(
+        "Integrator \"path\" \"integer maxdepth\" 1\nWorldBegin\nLightSource \"infinite\" \"float scale\" 1\n"
+        "Material \"diffuse\" \"spectrum reflectance\" [360 1 830 1] Shape \"disk\" \"float height\" -0.1 \"float radius\" 1e5\n");
+    struct sr_irradiance E = sr_render_irradiance(&w.job, (sr_vec3){0, 0, 0}, (sr_vec3){(float)n[0], 0, (float)n[2]},
+                                                  samples(16384), REPLICATES);
     check(row, "meter", (struct estimate){E.E_v, E.E_v_error, E.degrees}, GOAL);
     world_free(&w);
 }
@@ -151,9 +175,11 @@ static void over_white_ground(const struct row *row)
 /* A uniform sky through a rectangle alone: Lambert's sum over its edges. */
 static void through_portal(const struct row *row)
 {
-    static const char *const portals[] = {"[0.2 -0.5 1  0.2 0.7 1  1.2 0.7 1  1.2 -0.5 1]", "[1.5 -0.8 0.5  1.5 -0.8 1.6  1.5 1.1 1.6  1.5 1.1 0.5]"};
+    static const char *const portals[] = {"[0.2 -0.5 1  0.2 0.7 1  1.2 0.7 1  1.2 -0.5 1]",
+                                          "[1.5 -0.8 0.5  1.5 -0.8 1.6  1.5 1.1 1.6  1.5 1.1 0.5]"};
     char text[256];
-    snprintf(text, sizeof text, "LightSource \"infinite\" \"float scale\" 100 \"point3 portal\" %s\n", portals[row->a > 0]);
+    snprintf(text, sizeof text, "LightSource \"infinite\" \"float scale\" 100 \"point3 portal\" %s\n",
+             portals[row->a > 0]);
     check_irradiance(row, origin, up, text, usual, 1);
 }
 

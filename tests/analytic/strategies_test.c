@@ -1,15 +1,24 @@
 /* SPDX-License-Identifier: MIT */
-/* Every set of sampling strategies against closed forms, and against each other: the same integral in the hemisphere's form
- * and in the area's, so that a lost cosine, a wrong conversion or light that is counted twice shows. */
+/* Every set of sampling strategies against closed forms, and against each other: the same integral in the hemisphere's
+ * form and in the area's, so that a lost cosine, a wrong conversion or light that is counted twice shows. */
 #include "analytic/analytic.h"
 
 #define DEGREE (3.14159265358979323846 / 180)
 #define STRATEGY_GOAL 0.01
 
 static const char *const sets[] = {
-    "uniform-hemisphere", "cosine-hemisphere", "bsdf", "uniform-area", "light-area", "light-solid-angle", "bsdf+light-solid-angle",
-    "uniform-hemisphere+uniform-area", "cosine-hemisphere+light-area", "uniform-area+light-area+light-solid-angle",
-    "uniform-hemisphere+cosine-hemisphere+bsdf", "uniform-hemisphere+cosine-hemisphere+bsdf+uniform-area+light-area+light-solid-angle",
+    "uniform-hemisphere",
+    "cosine-hemisphere",
+    "bsdf",
+    "uniform-area",
+    "light-area",
+    "light-solid-angle",
+    "bsdf+light-solid-angle",
+    "uniform-hemisphere+uniform-area",
+    "cosine-hemisphere+light-area",
+    "uniform-area+light-area+light-solid-angle",
+    "uniform-hemisphere+cosine-hemisphere+bsdf",
+    "uniform-hemisphere+cosine-hemisphere+bsdf+uniform-area+light-area+light-solid-angle",
 };
 enum { SET_COUNT = sizeof sets / sizeof *sets };
 static const char *const heuristics[] = {"balance", "power", "mean"};
@@ -21,7 +30,8 @@ static const char *short_name(int set, int heuristic)
     static const struct {
         const char *word;
         char letter;
-    } letters[] = {{"uniform-hemisphere", 'U'}, {"cosine-hemisphere", 'C'}, {"bsdf", 'B'}, {"uniform-area", 'A'}, {"light-area", 'L'}, {"light-solid-angle", 'S'}};
+    } letters[] = {{"uniform-hemisphere", 'U'}, {"cosine-hemisphere", 'C'}, {"bsdf", 'B'},
+                   {"uniform-area", 'A'},       {"light-area", 'L'},        {"light-solid-angle", 'S'}};
     int n = 0;
     for (const char *p = sets[set]; *p; p += strcspn(p, "+"), p += *p == '+')
         for (size_t i = 0; i < 6; ++i)
@@ -39,8 +49,10 @@ static bool has_choice(int set) // of one light: points and distant lights are f
 static const char *integrator_text(int set, int heuristic, int depth)
 {
     static char text[256];
-    snprintf(text, sizeof text, "Integrator \"estimator\" \"string strategies\" \"%s\" \"string heuristic\" \"%s\" \"integer maxdepth\" %d\n", sets[set],
-             heuristics[heuristic], depth);
+    snprintf(
+        text, sizeof text,
+        "Integrator \"estimator\" \"string strategies\" \"%s\" \"string heuristic\" \"%s\" \"integer maxdepth\" %d\n",
+        sets[set], heuristics[heuristic], depth);
     return text;
 }
 
@@ -83,17 +95,24 @@ static void read_replicate(void *context, uint64_t r)
     for (uint32_t i = 0; i < m->n; ++i) {
         struct sr_sampler sampler = sr_sampler_start(job->sampler, job->seed, 3, 5, (uint32_t)r, i);
         struct sr_wavelengths w = sr_wavelengths_sample(job->lambda, sr_sample4(&sampler, SR_USE_FILM)[2]);
-        sr_spectrum E = job->integrator.model->gather(job->integrator.self, job->scene, &m->receiver, &sampler, &w, &worker);
+        sr_spectrum E =
+            job->integrator.model->gather(job->integrator.self, job->scene, &m->receiver, &sampler, &w, &worker);
         m->sums[r] += (double)sr_spectrum_to_xyz(E, &w).y / m->n;
     }
 }
 
-static struct estimate read_irradiance(const struct sr_render_job *job, const double p[3], const double n[3], double count)
+static struct estimate read_irradiance(const struct sr_render_job *job, const double p[3], const double n[3],
+                                       double count)
 {
     sr_vec3 z = sr_normalize((sr_vec3){(float)n[0], (float)n[1], (float)n[2]});
-    struct reading m = {.job = job, .n = samples(count), .receiver = {
-        .x = {.p = {(float)p[0], (float)p[1], (float)p[2]}, .n = z, .ns = z}, .frame = sr_frame_from_z(z),
-        .response = cosine_response, .sample = cosine_sample, .pdf = cosine_pdf, .is_upper = true}};
+    struct reading m = {.job = job,
+                        .n = samples(count),
+                        .receiver = {.x = {.p = {(float)p[0], (float)p[1], (float)p[2]}, .n = z, .ns = z},
+                                     .frame = sr_frame_from_z(z),
+                                     .response = cosine_response,
+                                     .sample = cosine_sample,
+                                     .pdf = cosine_pdf,
+                                     .is_upper = true}};
     sr_parallel_for(sr_thread_count(), REPLICATES, read_replicate, &m);
     struct sr_tally tally = {0};
     for (int r = 0; r < REPLICATES; ++r)
@@ -104,7 +123,8 @@ static struct estimate read_irradiance(const struct sr_render_job *job, const do
 /* ---- closed forms ---- */
 
 /* By a grey patch that a camera sees, and by a receiver. */
-static void by_all_sets(const struct row *row, const double p[3], const double n[3], const char *content, bool has_surface)
+static void by_all_sets(const struct row *row, const double p[3], const double n[3], const char *content,
+                        bool has_surface)
 {
     for (int i = 0; i < SET_COUNT; ++i)
         for (int h = 0; h < (strchr(sets[i], '+') ? 3 : 1); ++h) {
@@ -112,7 +132,10 @@ static void by_all_sets(const struct row *row, const double p[3], const double n
                 continue;
             struct world w = world_of("%s%s%s", integrator_text(i, h, 1), receiver_text(p, n), content);
             EXPECT(!w.job.integrator.model->blind(w.job.integrator.self, w.job.scene));
-            check(row, short_name(i, h), scaled(pixel_mean(&w.job, 0, 0, count_for(i), (const double[]){0, 1, 0}), (double)SR_PI / RECEIVER_RHO), STRATEGY_GOAL);
+            check(
+                row, short_name(i, h),
+                scaled(pixel_mean(&w.job, 0, 0, count_for(i), (const double[]){0, 1, 0}), (double)SR_PI / RECEIVER_RHO),
+                STRATEGY_GOAL);
             world_free(&w);
             w = world_of("%sWorldBegin\n%s", integrator_text(i, h, 0), content);
             check(row, short_name(i, h), read_irradiance(&w.job, p, n, count_for(i)), STRATEGY_GOAL);
@@ -129,7 +152,10 @@ static void point(const struct row *row)
 
 static void distant(const struct row *row)
 {
-    by_all_sets(row, origin, up, "LightSource \"distant\" \"float illuminance\" 1000 \"point3 from\" [0.8660254 0 0.5] \"point3 to\" [0 0 0]\n", false);
+    by_all_sets(
+        row, origin, up,
+        "LightSource \"distant\" \"float illuminance\" 1000 \"point3 from\" [0.8660254 0 0.5] \"point3 to\" [0 0 0]\n",
+        false);
 }
 
 static void disk(const struct row *row)
@@ -145,20 +171,29 @@ static void sphere(const struct row *row)
 
 static void square(const struct row *row)
 {
-    by_all_sets(row, origin, up, row->a > 0 ? BLACK GLOW "ReverseOrientation Shape \"bilinearmesh\" \"point3 P\" [-.5 -.5 1 .5 -.5 1 -.5 .5 1 .5 .5 1]\n"
-                                            : BLACK GLOW "ReverseOrientation Shape \"trianglemesh\" \"point3 P\" [-.5 -.5 1 .5 -.5 1 -.5 .5 1 .5 .5 1] \"integer indices\" [0 1 2 2 1 3]\n",
-                true);
+    by_all_sets(
+        row, origin, up,
+        row->a > 0 ? BLACK GLOW
+            "ReverseOrientation Shape \"bilinearmesh\" \"point3 P\" [-.5 -.5 1 .5 -.5 1 -.5 .5 1 .5 .5 1]\n"
+                   : BLACK GLOW
+            "ReverseOrientation Shape \"trianglemesh\" \"point3 P\" [-.5 -.5 1 .5 -.5 1 -.5 .5 1 .5 .5 1] \"integer indices\" [0 1 2 2 1 3]\n",
+        true);
 }
 
 static void triangle(const struct row *row)
 {
-    by_all_sets(row, origin, up, BLACK GLOW_BOTH "Shape \"trianglemesh\" \"point3 P\" [1 0 1 -1 2 1.5 -1 -1 2] \"integer indices\" [0 1 2]\n", true);
+    by_all_sets(row, origin, up,
+                BLACK GLOW_BOTH
+                "Shape \"trianglemesh\" \"point3 P\" [1 0 1 -1 2 1.5 -1 -1 2] \"integer indices\" [0 1 2]\n",
+                true);
 }
 
 static void sky(const struct row *row)
 {
     by_all_sets(row, origin, (const double[]){sin(row->a * DEGREE), 0, cos(row->a * DEGREE)},
-                "LightSource \"infinite\" \"float scale\" 1\n" BLACK "Shape \"disk\" \"float height\" -0.1 \"float radius\" 1e5\n", true);
+                "LightSource \"infinite\" \"float scale\" 1\n" BLACK
+                "Shape \"disk\" \"float height\" -0.1 \"float radius\" 1e5\n",
+                true);
 }
 
 static struct drawn from_inside(const void *context, sr_vec2 u, sr_vec2 v)
@@ -167,8 +202,8 @@ static struct drawn from_inside(const void *context, sr_vec2 u, sr_vec2 v)
     return (struct drawn){{0.11f, -0.07f, 0.05f}, sr_warp_uniform_sphere(u), 1};
 }
 
-/* A hollow sphere that glows and reflects: L = Le (1 - rho^(depth + 1)) / (1 - rho), light in view of the camera. Within a
- * sphere cos cos' / r^2 is the same everywhere, so that the area form, too, has a finite variance. */
+/* A hollow sphere that glows and reflects: L = Le (1 - rho^(depth + 1)) / (1 - rho), light in view of the camera.
+ * Within a sphere cos cos' / r^2 is the same everywhere, so that the area form, too, has a finite variance. */
 static void furnace(const struct row *row)
 {
     for (int i = 0; i < SET_COUNT; ++i)
@@ -214,7 +249,8 @@ static void agree(const char *id, const char *content, int depth, double n)
                 struct estimate e = pixel_mean(&w.job, 0, 0, n, (const double[]){0, 1, 0});
                 double z = (e.mean - path.mean) / sqrt(e.error * e.error + path.error * path.error);
                 bool is_right = fabs(z) < 4.9;
-                printf("  %-12s %-10s %-16.9g %-16.9g +- %-9.2e z %6.2f %s\n", id, short_name(i, h), path.mean, e.mean, e.error / e.mean, z, is_right ? "" : "WRONG");
+                printf("  %-12s %-10s %-16.9g %-16.9g +- %-9.2e z %6.2f %s\n", id, short_name(i, h), path.mean, e.mean,
+                       e.error / e.mean, z, is_right ? "" : "WRONG");
                 wrong += !is_right;
             }
             world_free(&w);
@@ -222,33 +258,42 @@ static void agree(const char *id, const char *content, int depth, double n)
     EXPECT_EQUAL_INT(wrong, 0);
 }
 
-#define VIEW                                                                                                                                   \
+#define VIEW                                                                                                                                       \
     "LookAt 0 -3 1.6  0 0 0.4  0 0 1\nCamera \"perspective\" \"float fov\" 60\nFilm \"rgb\" \"integer xresolution\" 1 \"integer yresolution\" 1\n" \
     "PixelFilter \"box\"\nWorldBegin\n"
 
 TEST(strategies_agree_where_matter_is_glossy_clear_and_mixed)
 {
-    agree("mixed", VIEW
-          "LightSource \"infinite\" \"float scale\" 0.3\n"
-          "AttributeBegin " BLACK GLOW_BOTH "Translate 0.5 0.3 1.5 Rotate 30 1 0 0 Shape \"disk\" \"float radius\" 0.6 AttributeEnd\n"
-          "AttributeBegin Material \"diffuse\" \"rgb reflectance\" [0.3 0.5 0.7] Shape \"disk\" \"float radius\" 5 AttributeEnd\n"
-          "AttributeBegin Material \"conductor\" \"float roughness\" 0.3 Translate -0.8 0 0.4 Shape \"sphere\" \"float radius\" 0.4 AttributeEnd\n"
-          "AttributeBegin Material \"coateddiffuse\" \"float roughness\" 0 Translate 0 0 0.4 Shape \"sphere\" \"float radius\" 0.4 AttributeEnd\n"
-          "AttributeBegin Material \"dielectric\" \"float roughness\" 0.2 Translate 0.8 0 0.4 Shape \"sphere\" \"float radius\" 0.4 AttributeEnd\n"
-          "AttributeBegin Material \"dielectric\" Translate 0.4 -0.7 0.3 Shape \"sphere\" \"float radius\" 0.3 AttributeEnd\n"
-          "AttributeBegin Material \"diffusetransmission\" Translate -0.4 -0.7 0.3 Shape \"sphere\" \"float radius\" 0.3 AttributeEnd\n",
-          4, 1024);
+    agree(
+        "mixed",
+        VIEW
+        "LightSource \"infinite\" \"float scale\" 0.3\n"
+        "AttributeBegin " BLACK GLOW_BOTH
+        "Translate 0.5 0.3 1.5 Rotate 30 1 0 0 Shape \"disk\" \"float radius\" 0.6 AttributeEnd\n"
+        "AttributeBegin Material \"diffuse\" \"rgb reflectance\" [0.3 0.5 0.7] Shape \"disk\" \"float radius\" 5 AttributeEnd\n"
+        "AttributeBegin Material \"conductor\" \"float roughness\" 0.3 Translate -0.8 0 0.4 Shape \"sphere\" \"float radius\" 0.4 AttributeEnd\n"
+        "AttributeBegin Material \"coateddiffuse\" \"float roughness\" 0 Translate 0 0 0.4 Shape \"sphere\" \"float radius\" 0.4 AttributeEnd\n"
+        "AttributeBegin Material \"dielectric\" \"float roughness\" 0.2 Translate 0.8 0 0.4 Shape \"sphere\" \"float radius\" 0.4 AttributeEnd\n"
+        "AttributeBegin Material \"dielectric\" Translate 0.4 -0.7 0.3 Shape \"sphere\" \"float radius\" 0.3 AttributeEnd\n"
+        "AttributeBegin Material \"diffusetransmission\" Translate -0.4 -0.7 0.3 Shape \"sphere\" \"float radius\" 0.3 AttributeEnd\n",
+        4, 1024);
 }
 
 TEST(strategies_agree_on_lights_whose_points_are_not_even_by_area)
 {
-    agree("shapes", VIEW
-          "AttributeBegin Material \"diffuse\" Shape \"disk\" \"float radius\" 5 AttributeEnd\n"
-          "AttributeBegin " GREY GLOW "Translate -1 0 1 Scale 1 0.4 0.2 Shape \"sphere\" \"float radius\" 0.5 AttributeEnd\n"
-          "AttributeBegin " GREY GLOW "Translate 0.2 0 1 Rotate 40 1 1 0 Scale 1 0.3 1 Shape \"cylinder\" \"float radius\" 0.3 \"float zmin\" -0.3 \"float zmax\" 0.3 AttributeEnd\n"
-          "AttributeBegin " GREY GLOW_BOTH "Translate 1 0 1 Shape \"bilinearmesh\" \"point3 P\" [-.3 -.3 0 .5 -.3 .4 -.3 .3 .3 .2 .6 -.2] AttributeEnd\n"
-          "AttributeBegin " GREY GLOW "Translate 0 1 1 Shape \"sphere\" \"float radius\" 0.4 \"float zmin\" -0.1 \"float phimax\" 250 AttributeEnd\n",
-          3, 1024);
+    agree(
+        "shapes",
+        VIEW
+        "AttributeBegin Material \"diffuse\" Shape \"disk\" \"float radius\" 5 AttributeEnd\n"
+        "AttributeBegin " GREY GLOW
+        "Translate -1 0 1 Scale 1 0.4 0.2 Shape \"sphere\" \"float radius\" 0.5 AttributeEnd\n"
+        "AttributeBegin " GREY GLOW
+        "Translate 0.2 0 1 Rotate 40 1 1 0 Scale 1 0.3 1 Shape \"cylinder\" \"float radius\" 0.3 \"float zmin\" -0.3 \"float zmax\" 0.3 AttributeEnd\n"
+        "AttributeBegin " GREY GLOW_BOTH
+        "Translate 1 0 1 Shape \"bilinearmesh\" \"point3 P\" [-.3 -.3 0 .5 -.3 .4 -.3 .3 .3 .2 .6 -.2] AttributeEnd\n"
+        "AttributeBegin " GREY GLOW
+        "Translate 0 1 1 Shape \"sphere\" \"float radius\" 0.4 \"float zmin\" -0.1 \"float phimax\" 250 AttributeEnd\n",
+        3, 1024);
 }
 
 /* An image of the sky that is dark but for some texels, and a lamp at a point. */
@@ -266,11 +311,14 @@ TEST(strategies_agree_on_images_of_the_sky_and_on_points)
     memcpy(data + head, sky, sizeof sky);
     struct sr_error error = {0};
     EXPECT(sr_file_write(path, data, head + sizeof sky, &error) == SR_OK);
-    snprintf(text, sizeof text, VIEW
-             "LightSource \"infinite\" \"string filename\" \"%s\"\n"
-             "AttributeBegin Material \"diffuse\" Shape \"disk\" \"float radius\" 5 AttributeEnd\n"
-             "AttributeBegin Material \"conductor\" \"float roughness\" 0.3 Translate -0.8 0 0.4 Shape \"sphere\" \"float radius\" 0.4 AttributeEnd\n"
-             "AttributeBegin " GREY GLOW_BOTH "Translate 0.5 0.3 1 Shape \"disk\" \"float radius\" 0.4 AttributeEnd\n", path);
+    snprintf(
+        text, sizeof text,
+        VIEW
+        "LightSource \"infinite\" \"string filename\" \"%s\"\n"
+        "AttributeBegin Material \"diffuse\" Shape \"disk\" \"float radius\" 5 AttributeEnd\n"
+        "AttributeBegin Material \"conductor\" \"float roughness\" 0.3 Translate -0.8 0 0.4 Shape \"sphere\" \"float radius\" 0.4 AttributeEnd\n"
+        "AttributeBegin " GREY GLOW_BOTH "Translate 0.5 0.3 1 Shape \"disk\" \"float radius\" 0.4 AttributeEnd\n",
+        path);
     agree("sky", text, 3, 1024);
     strcat(text, "LightSource \"point\" \"point3 from\" [0 -1 2] \"float scale\" 0.3\n");
     agree("sky+point", text, 3, 1024);
@@ -281,16 +329,23 @@ TEST(strategies_agree_on_images_of_the_sky_and_on_points)
 /* Relative standard deviation of one sample of a receiver that looks straight at a disk of half angle 10 deg. */
 static double deviation(const char *strategies)
 {
-    struct world w = world_of("Integrator \"estimator\" \"string strategies\" \"%s\" \"integer maxdepth\" 0\nWorldBegin\n" BLACK GLOW
-                              "ReverseOrientation Shape \"disk\" \"float height\" 1 \"float radius\" 0.176326980708\n", strategies);
-    struct reading m = {.receiver = {.x = {.n = {0, 0, 1}, .ns = {0, 0, 1}}, .frame = sr_frame_from_z((sr_vec3){0, 0, 1}), .response = cosine_response,
-                                     .sample = cosine_sample, .pdf = cosine_pdf, .is_upper = true}};
+    struct world w =
+        world_of("Integrator \"estimator\" \"string strategies\" \"%s\" \"integer maxdepth\" 0\nWorldBegin\n" BLACK GLOW
+                 "ReverseOrientation Shape \"disk\" \"float height\" 1 \"float radius\" 0.176326980708\n",
+                 strategies);
+    struct reading m = {.receiver = {.x = {.n = {0, 0, 1}, .ns = {0, 0, 1}},
+                                     .frame = sr_frame_from_z((sr_vec3){0, 0, 1}),
+                                     .response = cosine_response,
+                                     .sample = cosine_sample,
+                                     .pdf = cosine_pdf,
+                                     .is_upper = true}};
     struct sr_worker worker = {0};
     struct sr_tally tally = {0};
     for (uint32_t i = 0; i < samples(65536); ++i) {
         struct sr_sampler sampler = sr_sampler_start(SR_SAMPLER_INDEPENDENT, 1, 0, 0, 0, i);
         struct sr_wavelengths lambda = sr_wavelengths_sample(w.job.lambda, 0.5f); // the same spectrum for all
-        sr_spectrum E = w.job.integrator.model->gather(w.job.integrator.self, w.job.scene, &m.receiver, &sampler, &lambda, &worker);
+        sr_spectrum E =
+            w.job.integrator.model->gather(w.job.integrator.self, w.job.scene, &m.receiver, &sampler, &lambda, &worker);
         sr_tally_add(&tally, (double)sr_spectrum_to_xyz(E, &lambda).y);
     }
     world_free(&w);
@@ -319,8 +374,8 @@ static const char *blindness(int set, const char *content)
 
 TEST(strategies_tell_which_lights_they_cannot_find)
 {
-    static const char point_light[] = "LightSource \"point\"\n", area[] = GLOW "Shape \"disk\"\n", dome[] = "LightSource \"infinite\"\n",
-                      invisible[] = GLOW "Shape \"disk\" \"float alpha\" 0\n";
+    static const char point_light[] = "LightSource \"point\"\n", area[] = GLOW "Shape \"disk\"\n",
+                      dome[] = "LightSource \"infinite\"\n", invisible[] = GLOW "Shape \"disk\" \"float alpha\" 0\n";
     for (int i = 0; i < SET_COUNT; ++i) {
         EXPECT(!blindness(i, area) && !blindness(i, dome));
         EXPECT(!blindness(i, point_light) == has_choice(i));
@@ -340,6 +395,7 @@ TEST(strategies_that_do_not_exist_are_refused)
         struct sr_import_options options = {0};
         struct sr_import_result scene;
         EXPECT(sr_file_write(path, text, strlen(text), &error) == SR_OK);
-        EXPECT(sr_import_pbrt(path, &options, &scene, &silent, &error) == SR_ERROR_INPUT && strstr(error.text, "strateg"));
+        EXPECT(sr_import_pbrt(path, &options, &scene, &silent, &error) == SR_ERROR_INPUT &&
+               strstr(error.text, "strateg"));
     }
 }

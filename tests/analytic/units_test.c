@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Scenes in SI units: emission spectra are W m^-2 sr^-1 nm^-1 as they stand, power is in W; what is not a spectrum stays as it is. */
+/* Scenes in SI units: emission spectra are W m^-2 sr^-1 nm^-1 as they stand, power is in W; what is not a spectrum
+ * stays as it is. */
 #include "analytic/analytic.h"
 
 #define SI "#@ Option \"string units\" \"si\"\n"
@@ -26,7 +27,8 @@ static bool is_right(const char *name, const char *what, double value, double er
 static bool measure(const struct unit_case *c)
 {
     struct world w = world_of("%s", c->world);
-    struct sr_irradiance E = sr_render_irradiance(&w.job, (sr_vec3){0, 0, 0}, (sr_vec3){0, 0, 1}, samples(1024), REPLICATES);
+    struct sr_irradiance E =
+        sr_render_irradiance(&w.job, (sr_vec3){0, 0, 0}, (sr_vec3){0, 0, 1}, samples(1024), REPLICATES);
     bool ok = is_right(c->name, "E_v", E.E_v, E.E_v_error, c->E_v);
     ok = is_right(c->name, "E_e", E.E_e, E.E_e_error, c->E_e) && ok;
     world_free(&w);
@@ -38,22 +40,43 @@ TEST(spectra_in_si_units_are_taken_as_they_stand)
     double pi = (double)SR_PI, flat_lx = 683 * V_INTEGRAL;
     const double radius = 0.5, share = radius * radius / (radius * radius + 1); // of a disk at 1 m
     const struct unit_case cases[] = {
-        {"black body, large disk", SI "WorldBegin\nAreaLightSource \"diffuse\" \"blackbody L\" 2856 \"bool twosided\" true\n"
-         "Translate 0 0 1 Shape \"disk\" \"float radius\" 100\n", pi * PLANCK_LUMINANCE * infinity_disk, NAN},
-        {"uniform sky of 1 W m^-2 sr^-1 nm^-1", SI "WorldBegin\nLightSource \"infinite\" \"spectrum L\" " FLAT "\n", pi * flat_lx, pi * 470},
-        {"the same, twice", SI "WorldBegin\nLightSource \"infinite\" \"spectrum L\" " FLAT " \"float scale\" 2\n", 2 * pi * flat_lx, 2 * pi * 470},
-        {"sky of 100 W/m^2", SI "WorldBegin\nLightSource \"infinite\" \"spectrum L\" " FLAT " \"float illuminance\" 100\n", 100 * flat_lx / 470, 100},
-        {"sun of 1 W m^-2 nm^-1", SI "WorldBegin\nLightSource \"distant\" \"point3 from\" [0 0 1] \"point3 to\" [0 0 0] \"spectrum L\" " FLAT "\n", flat_lx, 470},
-        {"point of 1 W sr^-1 nm^-1 at 2 m", SI "WorldBegin\nLightSource \"point\" \"point3 from\" [0 0 2] \"spectrum I\" " FLAT "\n", flat_lx / 4, 470. / 4},
-        {"point of 10 W at 1 m", SI "WorldBegin\nLightSource \"point\" \"point3 from\" [0 0 1] \"spectrum I\" " FLAT " \"float power\" 10\n",
+        {"black body, large disk",
+         SI "WorldBegin\nAreaLightSource \"diffuse\" \"blackbody L\" 2856 \"bool twosided\" true\n"
+            "Translate 0 0 1 Shape \"disk\" \"float radius\" 100\n",
+         pi * PLANCK_LUMINANCE * infinity_disk, NAN},
+        {"uniform sky of 1 W m^-2 sr^-1 nm^-1", SI "WorldBegin\nLightSource \"infinite\" \"spectrum L\" " FLAT "\n",
+         pi * flat_lx, pi * 470},
+        {"the same, twice", SI "WorldBegin\nLightSource \"infinite\" \"spectrum L\" " FLAT " \"float scale\" 2\n",
+         2 * pi * flat_lx, 2 * pi * 470},
+        {"sky of 100 W/m^2",
+         SI "WorldBegin\nLightSource \"infinite\" \"spectrum L\" " FLAT " \"float illuminance\" 100\n",
+         100 * flat_lx / 470, 100},
+        {"sun of 1 W m^-2 nm^-1",
+         SI "WorldBegin\nLightSource \"distant\" \"point3 from\" [0 0 1] \"point3 to\" [0 0 0] \"spectrum L\" " FLAT
+            "\n",
+         flat_lx, 470},
+        {"point of 1 W sr^-1 nm^-1 at 2 m",
+         SI "WorldBegin\nLightSource \"point\" \"point3 from\" [0 0 2] \"spectrum I\" " FLAT "\n", flat_lx / 4,
+         470. / 4},
+        {"point of 10 W at 1 m",
+         SI "WorldBegin\nLightSource \"point\" \"point3 from\" [0 0 1] \"spectrum I\" " FLAT " \"float power\" 10\n",
          10 / (4 * pi) * flat_lx / 470, 10 / (4 * pi)},
-        {"disk of 10 W", SI "WorldBegin\nAreaLightSource \"diffuse\" \"spectrum L\" " FLAT " \"float power\" 10\nReverseOrientation "
-         "Shape \"disk\" \"float height\" 1 \"float radius\" 0.5\n", 10 / (radius * radius * pi) * share * flat_lx / 470, 10 / (radius * radius * pi) * share},
+        {"disk of 10 W",
+         SI "WorldBegin\nAreaLightSource \"diffuse\" \"spectrum L\" " FLAT " \"float power\" 10\nReverseOrientation "
+            "Shape \"disk\" \"float height\" 1 \"float radius\" 0.5\n",
+         10 / (radius * radius * pi) * share * flat_lx / 470, 10 / (radius * radius * pi) * share},
         {"white sky stays photometric", SI "WorldBegin\nLightSource \"infinite\" \"float scale\" 3\n", 3 * pi, NAN},
-        {"grey sky stays photometric", SI "WorldBegin\nLightSource \"infinite\" \"rgb L\" [0.5 0.5 0.5]\n", 0.5 * pi, NAN},
+        {"grey sky stays photometric", SI "WorldBegin\nLightSource \"infinite\" \"rgb L\" [0.5 0.5 0.5]\n", 0.5 * pi,
+         NAN},
         {"without the option: luminance 1", "WorldBegin\nLightSource \"infinite\" \"spectrum L\" " FLAT "\n", pi, NAN},
-        {"the option undone", SI "#@ Option \"string units\"\n#@   \"photometric\"\nWorldBegin\nLightSource \"infinite\" \"spectrum L\" " FLAT "\n", pi, NAN},
-        {"no directive, a comment", "#@Option nothing\n# @ Option nothing\nWorldBegin\nLightSource \"infinite\" \"spectrum L\" " FLAT "\n", pi, NAN},
+        {"the option undone",
+         SI
+         "#@ Option \"string units\"\n#@   \"photometric\"\nWorldBegin\nLightSource \"infinite\" \"spectrum L\" " FLAT
+         "\n",
+         pi, NAN},
+        {"no directive, a comment",
+         "#@Option nothing\n# @ Option nothing\nWorldBegin\nLightSource \"infinite\" \"spectrum L\" " FLAT "\n", pi,
+         NAN},
     };
     bool ok = true;
     printf("units\n  %-44s %-4s %16s %16s %10s %6s\n", "case", "", "truth", "measured", "error", "z");
@@ -64,9 +87,11 @@ TEST(spectra_in_si_units_are_taken_as_they_stand)
 
 TEST(the_picture_of_a_black_body_has_its_luminance)
 {
-    struct world w = world_of(SI "Integrator \"path\" \"integer maxdepth\" 0\nCamera \"perspective\" \"float fov\" 10\n"
-                              "Film \"rgb\" \"integer xresolution\" 1 \"integer yresolution\" 1\nWorldBegin\n"
-                              "AreaLightSource \"diffuse\" \"blackbody L\" 2856 \"bool twosided\" true\nTranslate 0 0 1 Shape \"disk\" \"float radius\" 100\n");
+    struct world w = world_of(
+        SI
+        "Integrator \"path\" \"integer maxdepth\" 0\nCamera \"perspective\" \"float fov\" 10\n"
+        "Film \"rgb\" \"integer xresolution\" 1 \"integer yresolution\" 1\nWorldBegin\n"
+        "AreaLightSource \"diffuse\" \"blackbody L\" 2856 \"bool twosided\" true\nTranslate 0 0 1 Shape \"disk\" \"float radius\" 100\n");
     struct estimate e = pixel_mean(&w.job, 0, 0, 512, (const double[]){0, 1, 0});
     EXPECT(is_right("black body", "L_v", e.mean, e.error, PLANCK_LUMINANCE));
     world_free(&w);
@@ -110,21 +135,26 @@ static struct told import(const char *text, enum sr_units units, enum sr_units e
 TEST(spectra_that_look_otherwise_than_they_count_are_told_once)
 {
 #define SKY(spectrum) "LightSource \"infinite\" \"spectrum L\" " spectrum "\n"
-    struct told t = import("WorldBegin\n" SKY("[360 1e4 830 2e4]") SKY("[360 1e4 830 2e4]"), SR_UNITS_OF_SCENE, SR_UNITS_PHOTOMETRIC, SR_OK);
+    struct told t = import("WorldBegin\n" SKY("[360 1e4 830 2e4]") SKY("[360 1e4 830 2e4]"), SR_UNITS_OF_SCENE,
+                           SR_UNITS_PHOTOMETRIC, SR_OK);
     EXPECT(t.warnings == 1 && strstr(t.text, "looks absolute (up to 20000)"));
     t = import("WorldBegin\n" SKY("[360 1e4 830 2e4]"), SR_UNITS_SI, SR_UNITS_SI, SR_OK);
     EXPECT_EQUAL_INT(t.warnings, 0);
-    t = import("WorldBegin\n" SKY("[360 1 830 100]") SKY("\"stdillum-D65\"") SKY("[360 1e4 830 2e4] \"float illuminance\" 7"), SR_UNITS_OF_SCENE, SR_UNITS_PHOTOMETRIC, SR_OK);
+    t = import("WorldBegin\n" SKY("[360 1 830 100]") SKY("\"stdillum-D65\"")
+                   SKY("[360 1e4 830 2e4] \"float illuminance\" 7"),
+               SR_UNITS_OF_SCENE, SR_UNITS_PHOTOMETRIC, SR_OK);
     EXPECT_EQUAL_INT(t.warnings, 0);
     t = import(SI "WorldBegin\n" SKY("\"stdillum-D65\""), SR_UNITS_OF_SCENE, SR_UNITS_SI, SR_OK);
     EXPECT(t.warnings == 1 && strstr(t.text, "relative spectrum"));
-    t = import(SI "WorldBegin\n" SKY("\"stdillum-D65\" \"float illuminance\" 7"), SR_UNITS_OF_SCENE, SR_UNITS_SI, SR_OK);
+    t = import(SI "WorldBegin\n" SKY("\"stdillum-D65\" \"float illuminance\" 7"), SR_UNITS_OF_SCENE, SR_UNITS_SI,
+               SR_OK);
     EXPECT_EQUAL_INT(t.warnings, 0);
     import(SI "WorldBegin\n" SKY("[360 1 830 1]"), SR_UNITS_PHOTOMETRIC, SR_UNITS_PHOTOMETRIC, SR_OK);
     t = import("#@ Option \"string units\" \"imperial\"\nWorldBegin\n", SR_UNITS_OF_SCENE, SR_UNITS_SI, SR_ERROR_INPUT);
     EXPECT(strstr(t.text, "units.pbrt:1:") && strstr(t.text, "expected \"photometric\" or \"si\""));
     t = import("#@ Opton \"string units\" \"si\"\nWorldBegin\n", SR_UNITS_OF_SCENE, SR_UNITS_PHOTOMETRIC, SR_OK);
     EXPECT(t.warnings == 2 && strstr(t.text, "the scene is empty")); // the misspelt word is told of first
-    t = import("#@ Opton \"string units\" \"si\"\nWorldBegin\n" SKY("\"stdillum-D65\""), SR_UNITS_OF_SCENE, SR_UNITS_PHOTOMETRIC, SR_OK);
+    t = import("#@ Opton \"string units\" \"si\"\nWorldBegin\n" SKY("\"stdillum-D65\""), SR_UNITS_OF_SCENE,
+               SR_UNITS_PHOTOMETRIC, SR_OK);
     EXPECT(t.warnings == 1 && strstr(t.text, "units.pbrt:1:4") && strstr(t.text, "did you mean \"Option\"?"));
 }

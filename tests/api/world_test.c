@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The public interface, through the public headers: what callers may leave out, how they stop a render, and that a world may
- * be used by several threads at a time. */
+/* The public interface, through the public headers: what callers may leave out, how they stop a render, and that a
+ * world may be used by several threads at a time. */
 #include "test.h"
 
 #include <steradian/steradian.h>
@@ -9,16 +9,17 @@
 
 /* A diffuse floor of reflectance 0.5 under a uniform sky of 100 cd/m^2: E = pi 100 lx, and L = 50 cd/m^2 as far as the
  * floor goes. */
-static const char *const floor_and_sky = "LookAt 0 1 0  0 0 0  0 0 1\n"
-                                         "Camera \"perspective\" \"float fov\" 45\n"
-                                         "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 16 \"string filename\" \"out.exr\"\n"
-                                         "PixelFilter \"box\"\n"
-                                         "Sampler \"zsobol\" \"integer pixelsamples\" 16\n"
-                                         "Integrator \"path\" \"integer maxdepth\" 3\n"
-                                         "WorldBegin\n"
-                                         "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ] \"float scale\" 100\n"
-                                         "Material \"diffuse\" \"rgb reflectance\" [ 0.5 0.5 0.5 ]\n"
-                                         "Shape \"bilinearmesh\" \"point3 P\" [ -9 0 -9  9 0 -9  -9 0 9  9 0 9 ]\n";
+static const char *const floor_and_sky =
+    "LookAt 0 1 0  0 0 0  0 0 1\n"
+    "Camera \"perspective\" \"float fov\" 45\n"
+    "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 16 \"string filename\" \"out.exr\"\n"
+    "PixelFilter \"box\"\n"
+    "Sampler \"zsobol\" \"integer pixelsamples\" 16\n"
+    "Integrator \"path\" \"integer maxdepth\" 3\n"
+    "WorldBegin\n"
+    "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ] \"float scale\" 100\n"
+    "Material \"diffuse\" \"rgb reflectance\" [ 0.5 0.5 0.5 ]\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [ -9 0 -9  9 0 -9  -9 0 9  9 0 9 ]\n";
 
 static const char *write_scene(const char *name, const char *text)
 {
@@ -58,7 +59,8 @@ static size_t value_count(const struct sr_picture *picture)
 
 static bool are_same(const struct sr_picture *a, const struct sr_picture *b)
 {
-    return value_count(a) == value_count(b) && memcmp(sr_picture_values(a), sr_picture_values(b), value_count(a) * sizeof(float)) == 0;
+    return value_count(a) == value_count(b) &&
+           memcmp(sr_picture_values(a), sr_picture_values(b), value_count(a) * sizeof(float)) == 0;
 }
 
 TEST(zeroed_settings_and_no_settings_are_the_scenes_own)
@@ -101,7 +103,10 @@ TEST(a_seed_makes_another_picture_and_the_same_seed_the_same)
     struct sr_picture *pictures[3];
     const uint32_t seeds[3] = {1, 1, 2};
     for (int i = 0; i < 3; ++i)
-        EXPECT_EQUAL_INT(sr_world_render(world, &(struct sr_render_settings){.has_seed = true, .seed = seeds[i], .threads = 1 + i}, &pictures[i], NULL, 0), SR_OK);
+        EXPECT_EQUAL_INT(
+            sr_world_render(world, &(struct sr_render_settings){.has_seed = true, .seed = seeds[i], .threads = 1 + i},
+                            &pictures[i], NULL, 0),
+            SR_OK);
     EXPECT(are_same(pictures[0], pictures[1]));
     EXPECT(!are_same(pictures[0], pictures[2]));
     for (int i = 0; i < 3; ++i)
@@ -109,8 +114,8 @@ TEST(a_seed_makes_another_picture_and_the_same_seed_the_same)
     sr_world_destroy(world);
 }
 
-/* How far a bump map tilts the surface depends on the footprint that it is read with, so that must not depend on how often
- * a pixel is sampled. */
+/* How far a bump map tilts the surface depends on the footprint that it is read with, so that must not depend on how
+ * often a pixel is sampled. */
 TEST(more_samples_do_not_change_what_a_bump_map_is_expected_to_look_like)
 {
     static const char *const waves =
@@ -130,7 +135,8 @@ TEST(more_samples_do_not_change_what_a_bump_map_is_expected_to_look_like)
         struct sr_picture *picture;
         uint32_t spp = i ? 256 : 4;
         EXPECT_EQUAL_INT(sr_world_render(world, &(struct sr_render_settings){.spp = spp}, &picture, NULL, 0), SR_OK);
-        uint32_t green = find_channel(picture, "G"), error = find_channel(picture, "SE.G"), w = sr_picture_width(picture), h = sr_picture_height(picture);
+        uint32_t green = find_channel(picture, "G"), error = find_channel(picture, "SE.G"),
+                 w = sr_picture_width(picture), h = sr_picture_height(picture);
         for (uint32_t y = 0; y < h; ++y)
             for (uint32_t x = 0; x < w; ++x) {
                 double e = (double)sr_picture_value(picture, x, y, error) / (w * h);
@@ -194,9 +200,13 @@ TEST(senseless_settings_are_refused)
     struct sr_world *world = load_floor_and_sky();
     struct sr_picture *picture;
     char error[256] = "";
-    EXPECT_EQUAL_INT(sr_world_render(world, &(struct sr_render_settings){.lambda_min_nm = 700, .lambda_max_nm = 400}, &picture, error, sizeof error), SR_ERROR_USAGE);
+    EXPECT_EQUAL_INT(sr_world_render(world, &(struct sr_render_settings){.lambda_min_nm = 700, .lambda_max_nm = 400},
+                                     &picture, error, sizeof error),
+                     SR_ERROR_USAGE);
     EXPECT(!picture && strstr(error, "700"));
-    EXPECT_EQUAL_INT(sr_world_render(world, &(struct sr_render_settings){.replicates = 1}, &picture, error, sizeof error), SR_ERROR_USAGE);
+    EXPECT_EQUAL_INT(
+        sr_world_render(world, &(struct sr_render_settings){.replicates = 1}, &picture, error, sizeof error),
+        SR_ERROR_USAGE);
     EXPECT(!picture && strstr(error, "replicate"));
 
     const double point_m[3] = {0, 0, 0}, up[3] = {0, 1, 0}, nowhere[3] = {0, 0, 0};
@@ -217,7 +227,8 @@ TEST(a_render_that_is_stopped_gives_what_there_is)
 {
     struct sr_world *world = load(SR_TEST_SOURCE_DIR "/scenes/cornell-box.pbrt");
     double share = -1;
-    struct sr_render_settings settings = {.spp = 4096, .progress = stop_at_once, .user = &share}; // half an hour, uninterrupted
+    struct sr_render_settings settings = {
+        .spp = 4096, .progress = stop_at_once, .user = &share}; // half an hour, uninterrupted
     struct sr_picture *picture;
     EXPECT_EQUAL_INT(sr_world_render(world, &settings, &picture, NULL, 0), SR_CANCELLED);
     EXPECT(picture && sr_picture_width(picture) == 512 && share >= 0 && share < 1);
@@ -287,9 +298,11 @@ TEST(irradiance_under_a_uniform_sky_is_pi_L)
 
 TEST(meters_of_a_scene_are_listed_and_read)
 {
-    struct sr_world *world = load(write_scene("meters.pbrt", "WorldBegin\nLightSource \"infinite\" \"spectrum L\" [200 1 1000 1] \"float scale\" 2\n"
-                                              "#@ Meter \"spherical\" \"string name\" \"ball\"\n#@ Meter \"irradiancemap\" \"vector3 u\" [1 0 0] "
-                                              "\"vector3 v\" [0 1 0] \"integer nx\" 3 \"integer ny\" 2\n"));
+    struct sr_world *world = load(
+        write_scene("meters.pbrt",
+                    "WorldBegin\nLightSource \"infinite\" \"spectrum L\" [200 1 1000 1] \"float scale\" 2\n"
+                    "#@ Meter \"spherical\" \"string name\" \"ball\"\n#@ Meter \"irradiancemap\" \"vector3 u\" [1 0 0] "
+                    "\"vector3 v\" [0 1 0] \"integer nx\" 3 \"integer ny\" 2\n"));
     struct sr_world_meter meter;
     struct sr_world_reading reading;
     char error[256] = "";
@@ -301,9 +314,15 @@ TEST(meters_of_a_scene_are_listed_and_read)
     EXPECT(!sr_world_meter(world, 2, &meter));
     EXPECT_EQUAL_INT(sr_world_measure(world, 0, NULL, &reading, error, sizeof error), SR_OK);
     EXPECT_RELATIVE(reading.value[SR_PHOTOPIC].value, 2 * 3.14159265358979, 1e-5);
-    EXPECT(reading.samples == 65536 && reading.samples_with_light == 65536 && reading.is_on_target && reading.remarks[0] == 0);
+    EXPECT(reading.samples == 65536 && reading.samples_with_light == 65536 && reading.is_on_target &&
+           reading.remarks[0] == 0);
     struct sr_quantity bins[3];
-    struct sr_measure_options options = {.error = 0.001, .system = SR_PHOTOPIC, .spectrum_first_nm = 450, .spectrum_step_nm = 100, .spectrum_count = 3, .spectrum = bins};
+    struct sr_measure_options options = {.error = 0.001,
+                                         .system = SR_PHOTOPIC,
+                                         .spectrum_first_nm = 450,
+                                         .spectrum_step_nm = 100,
+                                         .spectrum_count = 3,
+                                         .spectrum = bins};
     EXPECT_EQUAL_INT(sr_world_measure(world, 0, &options, &reading, error, sizeof error), SR_OK);
     EXPECT(reading.is_on_target);
     // 2 cd/m^2 of a flat spectrum: 2 / (683 * 106.857) W m^-2 sr^-1 nm^-1
@@ -334,7 +353,9 @@ TEST(pictures_come_back_from_files_as_they_were)
 {
     struct sr_world *world = load_floor_and_sky();
     struct sr_picture *picture, *read;
-    EXPECT_EQUAL_INT(sr_world_render(world, &(struct sr_render_settings){.spp = 4, .with_auxiliary = true}, &picture, NULL, 0), SR_OK);
+    EXPECT_EQUAL_INT(
+        sr_world_render(world, &(struct sr_render_settings){.spp = 4, .with_auxiliary = true}, &picture, NULL, 0),
+        SR_OK);
     char path[512], error[256] = "";
     snprintf(path, sizeof path, "%s/picture.exr", test_folder());
     EXPECT_EQUAL_INT(sr_picture_write(picture, path, error, sizeof error), SR_OK);
@@ -348,7 +369,8 @@ TEST(pictures_come_back_from_files_as_they_were)
     }
     EXPECT(isnan(sr_picture_value(read, 24, 0, 0)) && isnan(sr_picture_value(read, 0, 0, 1000)));
     EXPECT(!sr_picture_channel_name(read, 1000));
-    EXPECT(sr_picture_write(picture, "no/such/folder/picture.exr", error, sizeof error) != SR_OK && strstr(error, "no/such/folder"));
+    EXPECT(sr_picture_write(picture, "no/such/folder/picture.exr", error, sizeof error) != SR_OK &&
+           strstr(error, "no/such/folder"));
     sr_picture_destroy(read);
     sr_picture_destroy(picture);
     sr_world_destroy(world);

@@ -28,13 +28,14 @@ static double quantity(json_t *j, const char *name)
 TEST(brdf_eval_gives_f_and_pdf)
 {
     json_t *j = json_of(run_expecting(0, "brdf eval diffuse reflectance=.25 --wi 60 --wo 20 --json"));
-    EXPECT_NEAR(json_number_value(json_array_get(json_object_get(json_object_get(j, "f"), "value"), 0)), 0.25 / 3.14159265,
-                1e-8);
+    EXPECT_NEAR(json_number_value(json_array_get(json_object_get(json_object_get(j, "f"), "value"), 0)),
+                0.25 / 3.14159265, 1e-8);
     EXPECT_NEAR(quantity(j, "pdf"), 0.5 / 3.14159265, 1e-7);
     json_decref(j);
     // f of a sum is the sum of f, whatever the wavelength
-    j = json_of(run_expecting(0, "brdf eval .5*diffuse reflectance=.4 + 2*diffuse reflectance=400:0,600:1 --wi 10 --wo 70 "
-                                 "--lambda 450,500 --json"));
+    j = json_of(run_expecting(0,
+                              "brdf eval .5*diffuse reflectance=.4 + 2*diffuse reflectance=400:0,600:1 --wi 10 --wo 70 "
+                              "--lambda 450,500 --json"));
     json_t *f = json_object_get(json_object_get(j, "f"), "value");
     EXPECT_NEAR(json_number_value(json_array_get(f, 0)), (0.2 + 2 * 0.25) / 3.14159265, 1e-6);
     EXPECT_NEAR(json_number_value(json_array_get(f, 1)), (0.2 + 2 * 0.5) / 3.14159265, 1e-6);
@@ -43,13 +44,14 @@ TEST(brdf_eval_gives_f_and_pdf)
 
 TEST(brdf_specimens_come_from_scenes)
 {
-    put_file("mixed.pbrt", "WorldBegin\n"
-                           "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"spectrum reflectance\" [ 360 0.2 830 0.2 ]\n"
-                           "MakeNamedMaterial \"b\" \"string type\" \"diffuse\" \"spectrum reflectance\" [ 360 0.6 830 0.6 ]\n"
-                           "MakeNamedMaterial \"m\" \"string type\" \"mix\" \"string materials\" [ \"a\" \"b\" ]\n"
-                           "  \"float amount\" 0.25\n"
-                           "Material \"diffuse\" \"spectrum reflectance\" [ 360 0.9 830 0.9 ]\n"
-                           "Shape \"sphere\"\n");
+    put_file("mixed.pbrt",
+             "WorldBegin\n"
+             "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \"spectrum reflectance\" [ 360 0.2 830 0.2 ]\n"
+             "MakeNamedMaterial \"b\" \"string type\" \"diffuse\" \"spectrum reflectance\" [ 360 0.6 830 0.6 ]\n"
+             "MakeNamedMaterial \"m\" \"string type\" \"mix\" \"string materials\" [ \"a\" \"b\" ]\n"
+             "  \"float amount\" 0.25\n"
+             "Material \"diffuse\" \"spectrum reflectance\" [ 360 0.9 830 0.9 ]\n"
+             "Shape \"sphere\"\n");
     char words[600];
     const struct {
         const char *name;

@@ -4,12 +4,14 @@
 
 static double slope_of(json_t *root, size_t i)
 {
-    return json_number_value(json_object_get(json_object_get(json_array_get(json_object_get(root, "series"), i), "slope"), "value"));
+    return json_number_value(
+        json_object_get(json_object_get(json_array_get(json_object_get(root, "series"), i), "slope"), "value"));
 }
 
 TEST(converge_tells_the_slopes_of_an_integral)
 {
-    json_t *root = json_of(run_expecting(0, "converge --integral smooth-2d --samples 16:1024 --seeds 64 --json -o c.svg -o c.png -o c.csv"));
+    json_t *root = json_of(run_expecting(
+        0, "converge --integral smooth-2d --samples 16:1024 --seeds 64 --json -o c.svg -o c.png -o c.csv"));
     EXPECT_EQUAL_INT(json_array_size(json_object_get(root, "series")), 4); // two strategies, two samplers
     EXPECT_NEAR(slope_of(root, 0), -1.4, 0.2);                             // uniform, a scrambled net
     EXPECT_NEAR(slope_of(root, 1), -0.5, 0.1);                             // uniform, independent
@@ -19,8 +21,10 @@ TEST(converge_tells_the_slopes_of_an_integral)
 
 TEST(converge_finds_that_aiming_at_the_light_beats_the_uniform_hemisphere)
 {
-    json_t *root = json_of(run_expecting(0, "converge " CORNELL " -e uniform-hemisphere -e light-area --maxdepth 1 --resolution 8,8 --samples 1:16 --seeds 4 "
-                                            "--json --strip strip.png --strip-spp 1"));
+    json_t *root = json_of(
+        run_expecting(0, "converge " CORNELL
+                         " -e uniform-hemisphere -e light-area --maxdepth 1 --resolution 8,8 --samples 1:16 --seeds 4 "
+                         "--json --strip strip.png --strip-spp 1"));
     json_t *series = json_object_get(root, "series");
     double error[2];
     for (size_t i = 0; i < 2; ++i)
@@ -32,8 +36,10 @@ TEST(converge_finds_that_aiming_at_the_light_beats_the_uniform_hemisphere)
 
 TEST(converge_studies_a_meter_against_its_closed_form_and_leaves_out_who_is_blind)
 {
-    const struct said *s = run_expecting(0, "converge " SR_TEST_SOURCE_DIR "/scenes/meters.pbrt --meter desk --reference 167.0796 -e light-area -e uniform-area "
-                                            "--samples 16:1024 --json");
+    const struct said *s =
+        run_expecting(0, "converge " SR_TEST_SOURCE_DIR
+                         "/scenes/meters.pbrt --meter desk --reference 167.0796 -e light-area -e uniform-area "
+                         "--samples 16:1024 --json");
     EXPECT_SAYS(s->err, "uniform-area is left out: point");
     json_t *root = json_of(s);
     EXPECT_EQUAL_INT(json_array_size(json_object_get(root, "series")), 1);
@@ -53,10 +59,17 @@ TEST(converge_refuses_what_makes_no_sense)
 TEST(estimators_are_chosen_by_name_and_by_strategy)
 {
     EXPECT_SAYS(run_expecting(0, "render --estimator help")->out, "light-solid-angle");
-    EXPECT_SAYS(run_expecting(0, "render " CORNELL " --estimator uniform-hemisphere+light-area:power,maxdepth=2 --resolution 4,4 --spp 1 -o e.exr -q --json")->out,
-                "\"uniform-hemisphere+light-area:power\"");
+    EXPECT_SAYS(
+        run_expecting(
+            0,
+            "render " CORNELL
+            " --estimator uniform-hemisphere+light-area:power,maxdepth=2 --resolution 4,4 --spp 1 -o e.exr -q --json")
+            ->out,
+        "\"uniform-hemisphere+light-area:power\"");
     EXPECT_SAYS(run_expecting(2, "render " CORNELL " --estimator foo -o e.exr")->err, "there is no estimator \"foo\"");
     EXPECT_SAYS(run_expecting(2, "render " CORNELL " --estimator path,maxdepth=x -o e.exr")->err, "whole number");
-    put_file("point.pbrt", "Film \"rgb\" \"integer xresolution\" 2 \"integer yresolution\" 2\nWorldBegin\nLightSource \"point\"\n");
-    EXPECT_SAYS(run_expecting(0, "render point.pbrt --estimator bsdf --spp 1 -q -o e.exr")->err, "point, spot and distant lights are missing");
+    put_file("point.pbrt",
+             "Film \"rgb\" \"integer xresolution\" 2 \"integer yresolution\" 2\nWorldBegin\nLightSource \"point\"\n");
+    EXPECT_SAYS(run_expecting(0, "render point.pbrt --estimator bsdf --spp 1 -q -o e.exr")->err,
+                "point, spot and distant lights are missing");
 }

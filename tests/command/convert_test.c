@@ -45,22 +45,25 @@ static void expect_text(const char *text, const char *expected)
 
 TEST(convert_puts_words_into_one_form)
 {
-    expect_text("Camera\t\"perspective\"  \"float   fov\"[45.000]\n\n\n\nTranslate 0.10 1e+3 -0\nWorldBegin AttributeBegin Shape \"sphere\" \"point P\" []\n"
-                "\"bool b\" \"true\" \"string s\" [\"a\\\"b\"] \"integer i\" [0x10 -3] \"float x\" 1.00000001 AttributeEnd\n",
-                "Camera \"perspective\" \"float fov\" 45\n\nTranslate 0.1 1000 -0\nWorldBegin\nAttributeBegin\n"
-                "    Shape \"sphere\" \"point3 P\" [ ] \"bool b\" true \"string s\" \"a\\\"b\" \"integer i\" [ 16 -3 ] \"float x\" 1\nAttributeEnd\n");
+    expect_text(
+        "Camera\t\"perspective\"  \"float   fov\"[45.000]\n\n\n\nTranslate 0.10 1e+3 -0\nWorldBegin AttributeBegin Shape \"sphere\" \"point P\" []\n"
+        "\"bool b\" \"true\" \"string s\" [\"a\\\"b\"] \"integer i\" [0x10 -3] \"float x\" 1.00000001 AttributeEnd\n",
+        "Camera \"perspective\" \"float fov\" 45\n\nTranslate 0.1 1000 -0\nWorldBegin\nAttributeBegin\n"
+        "    Shape \"sphere\" \"point3 P\" [ ] \"bool b\" true \"string s\" \"a\\\"b\" \"integer i\" [ 16 -3 ] \"float x\" 1\nAttributeEnd\n");
 }
 
 TEST(convert_keeps_comments_and_blank_lines)
 {
-    expect_text("# first\n\n# second\nWorldBegin # trailing\n# own\nShape \"sphere\" # the radius:\n  \"float radius\" 2   # behind\n\n\n# last",
-                "# first\n\n# second\nWorldBegin # trailing\n# own\n# the radius:\nShape \"sphere\" \"float radius\" 2 # behind\n\n# last\n");
+    expect_text(
+        "# first\n\n# second\nWorldBegin # trailing\n# own\nShape \"sphere\" # the radius:\n  \"float radius\" 2   # behind\n\n\n# last",
+        "# first\n\n# second\nWorldBegin # trailing\n# own\n# the radius:\nShape \"sphere\" \"float radius\" 2 # behind\n\n# last\n");
 }
 
 TEST(convert_keeps_directives_in_comments)
 {
-    expect_text("#@ Option \"string units\" \"si\"\nWorldBegin\n#@   Name   \"ball\"\nShape \"sphere\"\n#@ Meter \"irradiance\"\n#@ \"point3 p\" [0 0 0.50]\n#@ Unheard of\n",
-                "#@ Option \"string units\" \"si\"\nWorldBegin\n#@ Name \"ball\"\nShape \"sphere\"\n#@ Meter \"irradiance\" \"point3 p\" [ 0 0 0.5 ]\n#@ Unheard of\n");
+    expect_text(
+        "#@ Option \"string units\" \"si\"\nWorldBegin\n#@   Name   \"ball\"\nShape \"sphere\"\n#@ Meter \"irradiance\"\n#@ \"point3 p\" [0 0 0.50]\n#@ Unheard of\n",
+        "#@ Option \"string units\" \"si\"\nWorldBegin\n#@ Name \"ball\"\nShape \"sphere\"\n#@ Meter \"irradiance\" \"point3 p\" [ 0 0 0.5 ]\n#@ Unheard of\n");
 }
 
 TEST(convert_writes_numbers_that_read_back_to_the_same)
@@ -101,7 +104,9 @@ TEST(convert_keeps_or_flattens_includes)
     sr_free(kept);
     run_expecting(0, "convert in.pbrt -o out.pbrt --includes flatten");
     char *flat = contents("out.pbrt");
-    EXPECT_SAYS(flat, "Material \"diffuse\" # here\nShape \"sphere\"\nAttributeBegin\n    Material \"diffuse\" # here\n    Shape \"sphere\"\nAttributeEnd\n");
+    EXPECT_SAYS(
+        flat,
+        "Material \"diffuse\" # here\nShape \"sphere\"\nAttributeBegin\n    Material \"diffuse\" # here\n    Shape \"sphere\"\nAttributeEnd\n");
     sr_free(flat);
     put_file("part.inc", "Include \"part.inc\"\n");
     EXPECT_SAYS(run_expecting(3, "convert in.pbrt -o out2.pbrt --includes flatten")->err, "includes itself");
@@ -113,8 +118,10 @@ TEST(convert_names_files_as_seen_from_the_output)
     char folder[1024];
     snprintf(folder, sizeof folder, "%s/deep", test_folder());
     mkdir(folder, 0777);
-    put_file("in.pbrt", HEAD "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"t.pfm\"\n"
-                             "Material \"conductor\" \"spectrum eta\" \"metal-Cu-eta\" \"spectrum k\" \"k.spd\"\nInclude \"part.inc\"\n");
+    put_file(
+        "in.pbrt", HEAD
+        "WorldBegin\nTexture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"t.pfm\"\n"
+        "Material \"conductor\" \"spectrum eta\" \"metal-Cu-eta\" \"spectrum k\" \"k.spd\"\nInclude \"part.inc\"\n");
     put_file("part.inc", LIGHT "Shape \"sphere\"\n");
     put_file("t.pfm", "PF\n1 1\n-1\n............");
     put_file("k.spd", "400 1\n700 1\n");
@@ -130,8 +137,11 @@ TEST(convert_names_files_as_seen_from_the_output)
 
 TEST(convert_sets_meshes_apart)
 {
-    put_file("in.pbrt", HEAD "WorldBegin\n" LIGHT "Translate 0 0 4\nShape \"trianglemesh\" \"float alpha\" 1 \"integer indices\" [0 1 2 0 2 3] \"point2 uv\" [0 0 1 0 1 1 0 1]\n"
-                             "\"normal N\" [0 0 -1 0 0.1 -1 0 0 -1 0.1 0 -1] \"point3 P\" [-1 -1 0 1 -1 0.3 1 1 0 -1 1 0.1]\n");
+    put_file(
+        "in.pbrt", HEAD
+        "WorldBegin\n" LIGHT
+        "Translate 0 0 4\nShape \"trianglemesh\" \"float alpha\" 1 \"integer indices\" [0 1 2 0 2 3] \"point2 uv\" [0 0 1 0 1 1 0 1]\n"
+        "\"normal N\" [0 0 -1 0 0.1 -1 0 0 -1 0.1 0 -1] \"point3 P\" [-1 -1 0 1 -1 0.3 1 1 0 -1 1 0.1]\n");
     run_expecting(0, "convert in.pbrt -o out.pbrt --ply=3");
     char *out = contents("out.pbrt");
     EXPECT_SAYS(out, "Shape \"plymesh\" \"string filename\" \"out-0001.ply\" \"float alpha\" 1");
@@ -148,10 +158,14 @@ TEST(convert_sets_meshes_apart)
 TEST(convert_refuses_what_it_cannot_read)
 {
     static const char *const bad[][2] = {
-        {"WorldBegin\nShap \"sphere\"\n", "in.pbrt:2:1: Shap"},        {"WorldBegin\nAttributeEnd\n", "AttributeEnd"},
-        {"WorldBegin\nAttributeBegin\n", "end"},                       {"WorldBegin\nShape \"sphere\" \"flaot r\" 1\n", "flaot"},
-        {"WorldBegin\nTranslate 1 2\n", "Translate"},                  {"Shape \"sphere\"\n", "WorldBegin"},
-        {"WorldBegin\nShape \"sphere\" \"float r\" [1 2\n", "float r"}, {"WorldBegin\nMaterial \"matte\" \"color Kd\" [1 1 1]\n", "color"},
+        {"WorldBegin\nShap \"sphere\"\n", "in.pbrt:2:1: Shap"},
+        {"WorldBegin\nAttributeEnd\n", "AttributeEnd"},
+        {"WorldBegin\nAttributeBegin\n", "end"},
+        {"WorldBegin\nShape \"sphere\" \"flaot r\" 1\n", "flaot"},
+        {"WorldBegin\nTranslate 1 2\n", "Translate"},
+        {"Shape \"sphere\"\n", "WorldBegin"},
+        {"WorldBegin\nShape \"sphere\" \"float r\" [1 2\n", "float r"},
+        {"WorldBegin\nMaterial \"matte\" \"color Kd\" [1 1 1]\n", "color"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; ++i) {
         put_file("in.pbrt", bad[i][0]);
@@ -223,8 +237,10 @@ TEST(convert_keeps_the_pictures_of_reference_scenes)
 
 /* ---- pbrt-v3 ---- */
 
-#define V4_FILM "Film \"rgb\" \"integer xresolution\" 12 \"integer yresolution\" 9\nSampler \"independent\" \"integer pixelsamples\" 2\n"
-#define V3_FILM "Film \"image\" \"integer xresolution\" 12 \"integer yresolution\" 9\nSampler \"random\" \"integer pixelsamples\" 2\n"
+#define V4_FILM                                                                                                        \
+    "Film \"rgb\" \"integer xresolution\" 12 \"integer yresolution\" 9\nSampler \"independent\" \"integer pixelsamples\" 2\n"
+#define V3_FILM                                                                                                        \
+    "Film \"image\" \"integer xresolution\" 12 \"integer yresolution\" 9\nSampler \"random\" \"integer pixelsamples\" 2\n"
 #define V4_BOX "PixelFilter \"box\"\n"
 #define BALL "Translate 0 0 4\nShape \"sphere\" \"float radius\" 2\n"
 
@@ -246,10 +262,12 @@ TEST(upgrade_materials_of_pbrt_v3)
     static const char *const pairs[][2] = {
         {"Material \"matte\" \"color Kd\" [.2 .4 .6]\n", "Material \"diffuse\" \"rgb reflectance\" [.2 .4 .6]\n"},
         {"Material \"matte\"\n", "Material \"diffuse\" \"rgb reflectance\" [.5 .5 .5]\n"},
-        {"Material \"uber\" \"rgb Kd\" [.3 .3 .3] \"rgb Ks\" [0 0 0]\n", "Material \"diffuse\" \"rgb reflectance\" [.3 .3 .3]\n"},
+        {"Material \"uber\" \"rgb Kd\" [.3 .3 .3] \"rgb Ks\" [0 0 0]\n",
+         "Material \"diffuse\" \"rgb reflectance\" [.3 .3 .3]\n"},
         {"Material \"glass\" \"float index\" 1.3\n", "Material \"dielectric\" \"float eta\" 1.3\n"},
         {"Material \"mirror\" \"rgb Kr\" [.7 .7 .7]\n", "Material \"conductor\" \"rgb reflectance\" [.7 .7 .7]\n"},
-        {"Material \"metal\" \"float roughness\" .25 \"bool remaproughness\" \"false\"\n", "Material \"conductor\" \"float roughness\" .25 \"bool remaproughness\" false\n"},
+        {"Material \"metal\" \"float roughness\" .25 \"bool remaproughness\" \"false\"\n",
+         "Material \"conductor\" \"float roughness\" .25 \"bool remaproughness\" false\n"},
         {"Material \"translucent\" \"rgb Kd\" [.8 .4 .2] \"rgb reflect\" [.5 .5 .5] \"rgb transmit\" [.25 .25 .25] \"rgb Ks\" [0 0 0]\n",
          "Material \"diffusetransmission\" \"rgb reflectance\" [.4 .2 .1] \"rgb transmittance\" [.2 .1 .05]\n"},
         {"MakeNamedMaterial \"a\" \"string type\" \"matte\" \"rgb Kd\" [.1 .1 .1]\nMakeNamedMaterial \"a\" \"string type\" \"matte\" \"rgb Kd\" [.9 .9 .9]\nNamedMaterial \"a\"\n",
@@ -261,8 +279,16 @@ TEST(upgrade_materials_of_pbrt_v3)
     };
     for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; ++i) {
         char old[2048], now[2048];
-        snprintf(old, sizeof old, V3_FILM "Camera \"perspective\"\nWorldBegin\nLightSource \"infinite\" \"color L\" [1 1 1] \"integer nsamples\" 4\n%s" BALL "WorldEnd\n", pairs[i][0]);
-        snprintf(now, sizeof now, V4_FILM V4_BOX "Camera \"perspective\"\nWorldBegin\nLightSource \"infinite\" \"rgb L\" [1 1 1]\n%s" BALL, pairs[i][1]);
+        snprintf(
+            old, sizeof old,
+            V3_FILM
+            "Camera \"perspective\"\nWorldBegin\nLightSource \"infinite\" \"color L\" [1 1 1] \"integer nsamples\" 4\n%s" BALL
+            "WorldEnd\n",
+            pairs[i][0]);
+        snprintf(now, sizeof now,
+                 V4_FILM V4_BOX
+                 "Camera \"perspective\"\nWorldBegin\nLightSource \"infinite\" \"rgb L\" [1 1 1]\n%s" BALL,
+                 pairs[i][1]);
         expect_upgrade(old, now);
     }
 }
@@ -283,24 +309,38 @@ TEST(upgrade_roughness_to_the_slopes_that_it_meant)
 TEST(upgrade_lights_of_pbrt_v3)
 {
     static const char *const pairs[][2] = {
-        {"LightSource \"infinite\" \"rgb L\" [1 2 3] \"rgb scale\" [2 2 2]\n", "LightSource \"infinite\" \"rgb L\" [1 2 3] \"float scale\" 2\n"},
-        {"LightSource \"point\" \"rgb I\" [4 4 4] \"rgb scale\" [1 .5 .25]\n", "LightSource \"point\" \"rgb I\" [4 2 1]\n"},
+        {"LightSource \"infinite\" \"rgb L\" [1 2 3] \"rgb scale\" [2 2 2]\n",
+         "LightSource \"infinite\" \"rgb L\" [1 2 3] \"float scale\" 2\n"},
+        {"LightSource \"point\" \"rgb I\" [4 4 4] \"rgb scale\" [1 .5 .25]\n",
+         "LightSource \"point\" \"rgb I\" [4 2 1]\n"},
         // a flat spectrum of 3 has luminance 3 in units of the equal-energy white
-        {"LightSource \"distant\" \"spectrum L\" [300 3 900 3]\n", "LightSource \"distant\" \"spectrum L\" [300 1 900 1] \"float scale\" 3\n"},
-        {"AreaLightSource \"area\" \"color L\" [2 2 2] \"integer nsamples\" 4\n", "AreaLightSource \"diffuse\" \"rgb L\" [2 2 2]\n"},
+        {"LightSource \"distant\" \"spectrum L\" [300 3 900 3]\n",
+         "LightSource \"distant\" \"spectrum L\" [300 1 900 1] \"float scale\" 3\n"},
+        {"AreaLightSource \"area\" \"color L\" [2 2 2] \"integer nsamples\" 4\n",
+         "AreaLightSource \"diffuse\" \"rgb L\" [2 2 2]\n"},
     };
     for (size_t i = 0; i < sizeof pairs / sizeof pairs[0]; ++i) {
         char old[2048], now[2048];
-        snprintf(old, sizeof old, V3_FILM "PixelFilter \"gaussian\" \"float alpha\" 2 \"float xwidth\" 1\nCamera \"perspective\"\nWorldBegin\n%s" BALL, pairs[i][0]);
-        snprintf(now, sizeof now, V4_FILM "PixelFilter \"gaussian\" \"float sigma\" .5 \"float xradius\" 1 \"float yradius\" 2\nCamera \"perspective\"\nWorldBegin\n%s" BALL, pairs[i][1]);
+        snprintf(
+            old, sizeof old,
+            V3_FILM
+            "PixelFilter \"gaussian\" \"float alpha\" 2 \"float xwidth\" 1\nCamera \"perspective\"\nWorldBegin\n%s" BALL,
+            pairs[i][0]);
+        snprintf(
+            now, sizeof now,
+            V4_FILM
+            "PixelFilter \"gaussian\" \"float sigma\" .5 \"float xradius\" 1 \"float yradius\" 2\nCamera \"perspective\"\nWorldBegin\n%s" BALL,
+            pairs[i][1]);
         expect_upgrade(old, now);
     }
 }
 
 TEST(upgrade_tells_what_it_approximates_and_where)
 {
-    put_file("old.pbrt", V3_FILM "WorldBegin\nMaterial \"fourier\" \"string bsdffile\" \"a.bsdf\"\nShape \"cone\"\nTransformBegin\nMaterial \"matte\" \"float sigma\" 20\nTransformEnd\n"
-                                 "LightSource \"infinite\" \"string mapname\" \"a.exr\"\n");
+    put_file(
+        "old.pbrt", V3_FILM
+        "WorldBegin\nMaterial \"fourier\" \"string bsdffile\" \"a.bsdf\"\nShape \"cone\"\nTransformBegin\nMaterial \"matte\" \"float sigma\" 20\nTransformEnd\n"
+        "LightSource \"infinite\" \"string mapname\" \"a.exr\"\n");
     const struct said *s = run_expecting(0, "convert old.pbrt --upgrade -o -");
     EXPECT_SAYS(s->err, "old.pbrt:4:1: Material \"fourier\"");
     EXPECT_SAYS(s->err, "old.pbrt:5:1: Shape \"cone\"");
@@ -315,9 +355,13 @@ TEST(upgrade_tells_what_it_approximates_and_where)
 
 TEST(convert_obj_to_what_pbrt_knows_or_to_our_own)
 {
-    put_file("a.mtl", "newmtl shiny\nKd .6 .3 .1\nKs .5 .5 .5\nNs 98\nillum 2\nnewmtl gold\nKd 1 .8 .3\nPm .4\nPr .5\nnewmtl lamp\nKe 5 5 5\nnewmtl tex\nmap_Kd t.pfm\n");
+    put_file(
+        "a.mtl",
+        "newmtl shiny\nKd .6 .3 .1\nKs .5 .5 .5\nNs 98\nillum 2\nnewmtl gold\nKd 1 .8 .3\nPm .4\nPr .5\nnewmtl lamp\nKe 5 5 5\nnewmtl tex\nmap_Kd t.pfm\n");
     put_file("t.pfm", "PF\n1 1\n-1\n............");
-    put_file("a.obj", "mtllib a.mtl\nv -1 0 0\nv 1 0 0\nv 1 1 0\nv -1 1 0\nvt 0 0\ng one\nusemtl shiny\nf 1 2 3 4\ng two\nusemtl gold\nf 1 2 3\nusemtl lamp\nf 4 3 1\nusemtl tex\nf 1/1 2/1 4/1\n");
+    put_file(
+        "a.obj",
+        "mtllib a.mtl\nv -1 0 0\nv 1 0 0\nv 1 1 0\nv -1 1 0\nvt 0 0\ng one\nusemtl shiny\nf 1 2 3 4\ng two\nusemtl gold\nf 1 2 3\nusemtl lamp\nf 4 3 1\nusemtl tex\nf 1/1 2/1 4/1\n");
     run_expecting(0, "convert a.obj -o out.pbrt --quiet");
     char *out = contents("out.pbrt");
     EXPECT_SAYS(out, "MakeNamedMaterial \"shiny\"\n    \"string type\" \"coateddiffuse\"");
@@ -341,12 +385,15 @@ TEST(convert_obj_to_what_pbrt_knows_or_to_our_own)
 /* Every model becomes text without a word that pbrt does not know. */
 TEST(convert_gltf_models_to_what_pbrt_knows)
 {
-    static const char *const models[] = {"AlphaBlendModeTest", "BoxVertexColors", "NormalTangentTest", "TextureTransformTest", "TransmissionTest"};
-    static const char *const ours[] = {"\"openpbr\"", "\"texelmap\"", "\"attribute\"", "\"product\"", "\"threshold\"", "normalx"};
+    static const char *const models[] = {"AlphaBlendModeTest", "BoxVertexColors", "NormalTangentTest",
+                                         "TextureTransformTest", "TransmissionTest"};
+    static const char *const ours[] = {"\"openpbr\"", "\"texelmap\"",  "\"attribute\"",
+                                       "\"product\"", "\"threshold\"", "normalx"};
     for (size_t i = 0; i < sizeof models / sizeof *models; ++i) {
         char name[512], words[5000];
         snprintf(name, sizeof name, "gltf/%s/glTF/%s.gltf", models[i], models[i]);
-        if (access(SR_TEST_REFERENCE_DIR "/gltf", R_OK) == 0 && strcmp(models[i], "NormalTangentTest") != 0 && strcmp(models[i], "TransmissionTest") != 0)
+        if (access(SR_TEST_REFERENCE_DIR "/gltf", R_OK) == 0 && strcmp(models[i], "NormalTangentTest") != 0 &&
+            strcmp(models[i], "TransmissionTest") != 0)
             test_reference_file(name);
         else
             snprintf(name, sizeof name, "gltf/%s/glTF-Binary/%s.glb", models[i], models[i]);

@@ -22,7 +22,8 @@ static char *drain(FILE *file)
 
 TEST(format_reference_is_up_to_date)
 {
-    FILE *now = popen(SR_TEST_COMMAND " formats --markdown", "r"), *kept = fopen(SR_TEST_SOURCE_DIR "/docs/format.md", "rb");
+    FILE *now = popen(SR_TEST_COMMAND " formats --markdown", "r"),
+         *kept = fopen(SR_TEST_SOURCE_DIR "/docs/format.md", "rb");
     if (!now || !kept)
         test_fail(__FILE__, __LINE__, "the reference cannot be read");
     char *a = drain(now), *b = drain(kept);
@@ -75,7 +76,8 @@ TEST(format_reference_explains_each_directive)
         for (size_t i = 0; i < json_array_size(all); ++i) {
             const char *text = json_string_value(json_object_get(json_array_get(all, i), "text"));
             if (!text || !text[0])
-                test_fail(__FILE__, __LINE__, "%s has no sentence", json_string_value(json_object_get(json_array_get(all, i), "name")));
+                test_fail(__FILE__, __LINE__, "%s has no sentence",
+                          json_string_value(json_object_get(json_array_get(all, i), "name")));
         }
         json_decref(all);
     }

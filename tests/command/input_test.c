@@ -81,7 +81,8 @@ TEST(input_transform_that_is_no_number)
 TEST(input_unsupported_and_unknown_things)
 {
     expect_refused(HEAD "Shape \"hyperboloid\"\n", "bad.pbrt:6:1", "hyperboloid");
-    expect_refused(HEAD "Texture \"t\" \"float\" \"ptex\"\nShape \"sphere\" \"texture alpha\" \"t\"\n", "bad.pbrt:6:1", "Ptex");
+    expect_refused(HEAD "Texture \"t\" \"float\" \"ptex\"\nShape \"sphere\" \"texture alpha\" \"t\"\n", "bad.pbrt:6:1",
+                   "Ptex");
     expect_refused(HEAD "Shapes \"sphere\"\n", "bad.pbrt:6:1", "Shape");
     expect_refused("Camera \"realistic\"\nWorldBegin\n", "bad.pbrt:1:1", "realistic");
 }

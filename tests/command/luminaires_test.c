@@ -7,8 +7,10 @@ static double value_of(json_t *object, const char *name)
     return json_number_value(json_object_get(json_object_get(object, name), "value"));
 }
 
-#define LAMP "IESNA:LM-63-2002\n[MANUFAC] Formula & Sons\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 5\n0 45 90\n0\n100 100 0\n"
-#define ROOM "Film \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 40\nSampler \"independent\" \"integer pixelsamples\" 4\n"
+#define LAMP                                                                                                           \
+    "IESNA:LM-63-2002\n[MANUFAC] Formula & Sons\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 5\n0 45 90\n0\n100 100 0\n"
+#define ROOM                                                                                                           \
+    "Film \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 40\nSampler \"independent\" \"integer pixelsamples\" 4\n"
 
 TEST(info_tells_and_plots_a_luminaire)
 {
@@ -41,11 +43,13 @@ TEST(info_tells_and_plots_a_luminaire)
 TEST(luminaires_light_scenes_and_fisheyes_judge_their_glare)
 {
     put_file("lamp.ies", LAMP);
-    put_file("room.pbrt", ROOM "LookAt 0 0 0  0 1 0  0 0 1\nCamera \"perspective\"\n#@ Camera \"fisheye\" \"string mapping\" \"equisolid\"\nWorldBegin\n"
-                          "#@ Meter \"irradiance\" \"string name\" \"below\" \"point3 p\" [0 0 -2] \"normal n\" [0 0 1]\n"
-                          "AttributeBegin\n#@ LightSource \"ies\" \"string filename\" \"lamp.ies\" \"float scale\" 4\nAttributeEnd\n"
-                          "AttributeBegin\nAreaLightSource \"diffuse\" \"float scale\" 5000\nTranslate 0 3 1 Shape \"sphere\" \"float radius\" 0.4\nAttributeEnd\n"
-                          "Material \"diffuse\" Shape \"sphere\" \"float radius\" 50\n");
+    put_file(
+        "room.pbrt", ROOM
+        "LookAt 0 0 0  0 1 0  0 0 1\nCamera \"perspective\"\n#@ Camera \"fisheye\" \"string mapping\" \"equisolid\"\nWorldBegin\n"
+        "#@ Meter \"irradiance\" \"string name\" \"below\" \"point3 p\" [0 0 -2] \"normal n\" [0 0 1]\n"
+        "AttributeBegin\n#@ LightSource \"ies\" \"string filename\" \"lamp.ies\" \"float scale\" 4\nAttributeEnd\n"
+        "AttributeBegin\nAreaLightSource \"diffuse\" \"float scale\" 5000\nTranslate 0 3 1 Shape \"sphere\" \"float radius\" 0.4\nAttributeEnd\n"
+        "Material \"diffuse\" Shape \"sphere\" \"float radius\" 50\n");
     EXPECT_SAYS(run_expecting(0, "measure room.pbrt --samples 1024 --quiet")->out, "below");
     run_expecting(0, "render room.pbrt -o room.exr --quiet");
     struct sr_image *image = get_image("room.exr");
@@ -86,14 +90,22 @@ TEST(pictures_of_other_cameras_are_no_field_of_view)
 
 TEST(geometry_becomes_a_table_and_a_lamp_a_file)
 {
-    put_file("flat.pbrt", "WorldBegin\nMaterial \"diffuse\" \"spectrum reflectance\" [360 0.4 830 0.4]\nShape \"bilinearmesh\" \"point3 P\" [-9 -9 0  9 -9 0  -9 9 0  9 9 0]\n");
-    EXPECT_SAYS(run_expecting(0, "brdf measure flat.pbrt -o flat.txt --patch -1,1,-1,1 --samples 64000 --incidence 3 --cells 6,6")->out, "0.40000");
-    json_t *j = json_of(run_expecting(0, "brdf info flat.txt --json")), *f = json_array_get(json_object_get(j, "files"), 0);
+    put_file(
+        "flat.pbrt",
+        "WorldBegin\nMaterial \"diffuse\" \"spectrum reflectance\" [360 0.4 830 0.4]\nShape \"bilinearmesh\" \"point3 P\" [-9 -9 0  9 -9 0  -9 9 0  9 9 0]\n");
+    EXPECT_SAYS(run_expecting(
+                    0, "brdf measure flat.pbrt -o flat.txt --patch -1,1,-1,1 --samples 64000 --incidence 3 --cells 6,6")
+                    ->out,
+                "0.40000");
+    json_t *j = json_of(run_expecting(0, "brdf info flat.txt --json")),
+           *f = json_array_get(json_object_get(j, "files"), 0);
     EXPECT_NEAR(value_of(json_array_get(json_object_get(f, "scatter"), 4), "reflected"), 0.4, 0.02);
     json_decref(j);
     EXPECT_SAYS(run_expecting(2, "brdf measure flat.pbrt -o flat.txt")->err, "--patch");
     // 500 lm, measured, written and read
-    put_file("lamp.pbrt", "WorldBegin\nLightSource \"point\" \"float power\" 500\n#@ Meter \"intensity\" \"string name\" \"far\" \"float cstep\" 360 \"float gammastep\" 10\n");
+    put_file(
+        "lamp.pbrt",
+        "WorldBegin\nLightSource \"point\" \"float power\" 500\n#@ Meter \"intensity\" \"string name\" \"far\" \"float cstep\" 360 \"float gammastep\" 10\n");
     run_expecting(0, "measure lamp.pbrt -o lamp.ldt --samples 100000 --quiet");
     j = json_of(run_expecting(0, "info lamp.ldt --json"));
     EXPECT_RELATIVE(value_of(j, "flux"), 500, 0.01);

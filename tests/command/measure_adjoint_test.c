@@ -2,11 +2,11 @@
 /* steradian measure --balance, and the files of a goniophotometer. */
 #include "run.h"
 
-#define LAMP                                                                                                             \
-    "Film \"rgb\" \"string filename\" \"a.exr\" Camera \"perspective\"\nWorldBegin\n"                                    \
-    "#@ Meter \"intensity\" \"string name\" \"gonio\" \"float cstep\" 90 \"float gammastep\" 10\n"                        \
-    "AttributeBegin Rotate 180 1 0 0 Material \"diffuse\" \"spectrum reflectance\" [360 0 830 0]\n"                       \
-    "AreaLightSource \"diffuse\" \"float power\" 100 Shape \"disk\" \"float radius\" 0.2 AttributeEnd\n"                  \
+#define LAMP                                                                                                           \
+    "Film \"rgb\" \"string filename\" \"a.exr\" Camera \"perspective\"\nWorldBegin\n"                                  \
+    "#@ Meter \"intensity\" \"string name\" \"gonio\" \"float cstep\" 90 \"float gammastep\" 10\n"                     \
+    "AttributeBegin Rotate 180 1 0 0 Material \"diffuse\" \"spectrum reflectance\" [360 0 830 0]\n"                    \
+    "AreaLightSource \"diffuse\" \"float power\" 100 Shape \"disk\" \"float radius\" 0.2 AttributeEnd\n"               \
     "Material \"diffuse\" \"spectrum reflectance\" [360 0.5 830 0.5] AttributeBegin Translate 0 0 -1 Shape \"disk\" \"float radius\" 1 AttributeEnd\n"
 
 static double value_of(const json_t *j, const char *key, const char *system, const char *what)
@@ -23,8 +23,10 @@ TEST(measure_balance_tells_where_the_light_goes)
     const struct said *s = run_expecting(0, "measure lamp.pbrt --balance --json --samples 65536 -q");
     json_t *all = json_of(s);
     const json_t *b = json_object_get(all, "balance");
-    double emitted = value_of(b, "emitted", "photopic", "value"), absorbed = value_of(b, "absorbed", "photopic", "value"),
-           escaped = value_of(b, "escaped", "photopic", "value"), u = value_of(b, "closure", "photopic", "standard_uncertainty");
+    double emitted = value_of(b, "emitted", "photopic", "value"),
+           absorbed = value_of(b, "absorbed", "photopic", "value"),
+           escaped = value_of(b, "escaped", "photopic", "value"),
+           u = value_of(b, "closure", "photopic", "standard_uncertainty");
     EXPECT_NEAR(emitted, 100, 0.01);
     EXPECT(fabs(emitted - absorbed - escaped) < 5 * u + 1e-6);
     EXPECT(absorbed > 1 && escaped > 1);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* steradian measure as a user runs it: readings that are right, lines in and out, and what is said when something is wrong. */
+/* steradian measure as a user runs it: readings that are right, lines in and out, and what is said when something is
+ * wrong. */
 #define _POSIX_C_SOURCE 200809L
 #include "run.h"
 
@@ -12,7 +13,8 @@ static const json_t *meter_of(const json_t *j, const char *name)
 {
     size_t i;
     const json_t *m;
-    json_array_foreach(json_object_get(j, "meters"), i, m) if (strcmp(json_string_value(json_object_get(m, "name")), name) == 0) return m;
+    json_array_foreach(json_object_get(j, "meters"), i,
+                       m) if (strcmp(json_string_value(json_object_get(m, "name")), name) == 0) return m;
     test_fail(__FILE__, __LINE__, "there is no meter %s", name);
 }
 
@@ -33,13 +35,15 @@ static void expect_reading(const json_t *all, const char *name, const char *unit
         test_fail(__FILE__, __LINE__, "%s: %.9g +- %.2g, expected %.9g", name, value, u, truth);
 }
 
-/* The closed forms that stand in the scene: a disk of 1000 cd/m^2, radius 0.5 at z = 3, and a point of 100 cd at (1.5, 0, 2.8). */
+/* The closed forms that stand in the scene: a disk of 1000 cd/m^2, radius 0.5 at z = 3, and a point of 100 cd at (1.5,
+ * 0, 2.8). */
 TEST(measure_reads_the_bench_as_its_closed_forms_say)
 {
     const struct said *s = run_expecting(0, "measure " BENCH " --json -q --samples 65536");
     EXPECT_EQUAL_TEXT(s->err, "");
     json_t *j = json_of(s);
-    double pi = 3.14159265358979323846, h = 1.8, a = atan(0.5 / h), r2 = 1.5 * 1.5 + 1.6 * 1.6, I = 100 / r2, cosine = 1.6 / sqrt(r2), sine = 1.5 / sqrt(r2);
+    double pi = 3.14159265358979323846, h = 1.8, a = atan(0.5 / h), r2 = 1.5 * 1.5 + 1.6 * 1.6, I = 100 / r2,
+           cosine = 1.6 / sqrt(r2), sine = 1.5 / sqrt(r2);
     expect_reading(j, "desk", "lx", 1000 * pi * 0.25 / (0.25 + 2.2 * 2.2) + 12.8);
     expect_reading(j, "lamp, ray", "cd/m^2", 1000);
     expect_reading(j, "lamp, cone", "cd/m^2", 1000);
@@ -50,7 +54,8 @@ TEST(measure_reads_the_bench_as_its_closed_forms_say)
     expect_reading(j, "fluence", "lx", 1000 * 2 * pi * (1 - cos(a)) + I);
     expect_reading(j, "out of ball", "lm", -400 * pi);
     EXPECT(json_is_true(json_object_get(j, "complete")));
-    const json_t *colour = json_object_get(meter_of(j, "colour"), "colour"), *spectrum = json_object_get(meter_of(j, "spectrum"), "spectrum");
+    const json_t *colour = json_object_get(meter_of(j, "colour"), "colour"),
+                 *spectrum = json_object_get(meter_of(j, "spectrum"), "spectrum");
     EXPECT_NEAR(number_of(json_object_get(colour, "x"), "value"), 0.44757, 2e-5);
     EXPECT_EQUAL_TEXT(json_string_value(json_object_get(json_object_get(colour, "CCT"), "unit")), "K");
     EXPECT_NEAR(number_of(json_object_get(colour, "CCT"), "value"), 2855.5, 0.1);
@@ -108,8 +113,10 @@ TEST(measure_streams_points_and_rays)
 
 TEST(measure_writes_a_map_with_its_error)
 {
-    put_file("map.pbrt", "WorldBegin LightSource \"infinite\" \"float scale\" 1\n"
-                         "#@ Meter \"irradiancemap\" \"string name\" \"map\" \"vector3 u\" [1 0 0] \"vector3 v\" [0 1 0] \"integer nx\" 4 \"integer ny\" 3\n");
+    put_file(
+        "map.pbrt",
+        "WorldBegin LightSource \"infinite\" \"float scale\" 1\n"
+        "#@ Meter \"irradiancemap\" \"string name\" \"map\" \"vector3 u\" [1 0 0] \"vector3 v\" [0 1 0] \"integer nx\" 4 \"integer ny\" 3\n");
     run_expecting(0, "measure map.pbrt -o map.exr -q");
     struct sr_image *image = get_image("map.exr");
     EXPECT(image->width == 4 && image->height == 3 && sr_image_find_channel(image, "SE.Y") >= 0);
@@ -118,20 +125,24 @@ TEST(measure_writes_a_map_with_its_error)
         EXPECT_RELATIVE(image->floats[i * image->channel_count + (size_t)y], 3.14159265, 2e-3);
     EXPECT_EQUAL_TEXT(image->channels[y].unit, "lx");
     sr_image_free(image);
-    EXPECT_SAYS(run_expecting(2, "measure " BENCH " -o map.exr -m ball")->err, "-o writes one map or intensity distribution, and 0 are asked for");
+    EXPECT_SAYS(run_expecting(2, "measure " BENCH " -o map.exr -m ball")->err,
+                "-o writes one map or intensity distribution, and 0 are asked for");
 }
 
 TEST(measure_says_what_is_wrong)
 {
     EXPECT_SAYS(run_expecting(2, "measure")->err, "a scene file was expected");
-    EXPECT_SAYS(run_expecting(2, "measure " BENCH " --meter dask")->err, "has no meter \"dask\"; did you mean \"desk\"?");
+    EXPECT_SAYS(run_expecting(2, "measure " BENCH " --meter dask")->err,
+                "has no meter \"dask\"; did you mean \"desk\"?");
     EXPECT_SAYS(run_expecting(2, "measure " BENCH " --quantity photopik")->err, "did you mean \"photopic\"?");
     EXPECT_SAYS(run_expecting(2, "measure " BENCH " --error 200%")->err, "--error 200%");
     EXPECT_SAYS(run_expecting(2, "measure " BENCH " --spectrum 400-700")->err, "LO:STEP:HI in nm was expected");
     EXPECT_SAYS(run_expecting(2, "measure " BENCH " --eror 1%")->err, "did you mean --error?");
     EXPECT_SAYS(run_expecting(2, "measure " BENCH " --points --list")->err, "do not go with them");
     EXPECT_SAYS(run_expecting(3, "measure " CORNELL)->err, "the scene has no meters");
-    put_file("dark.pbrt", "WorldBegin Shape \"sphere\" LightSource \"point\" \"point3 from\" [0 0 3]\n#@ Meter \"fluence\" \"string name\" \"inside\"\n");
+    put_file(
+        "dark.pbrt",
+        "WorldBegin Shape \"sphere\" LightSource \"point\" \"point3 from\" [0 0 3]\n#@ Meter \"fluence\" \"string name\" \"inside\"\n");
     const struct said *s = run_expecting(0, "measure dark.pbrt");
     EXPECT_SAYS(s->err, "warning: meter \"inside\": no light found in 65536 samples");
     EXPECT_SAYS(s->err, "inside shape number 1");
@@ -140,8 +151,10 @@ TEST(measure_says_what_is_wrong)
 
 TEST(measure_when_interrupted_prints_what_there_is)
 {
-    put_file("long.pbrt", "WorldBegin LightSource \"infinite\"\nAreaLightSource \"diffuse\" Shape \"sphere\" \"float radius\" 0.1\nTranslate 0 0 3\n"
-                          "#@ Meter \"irradiance\" \"normal n\" [0 0 -1] \"string name\" \"m\"\n");
+    put_file(
+        "long.pbrt",
+        "WorldBegin LightSource \"infinite\"\nAreaLightSource \"diffuse\" Shape \"sphere\" \"float radius\" 0.1\nTranslate 0 0 3\n"
+        "#@ Meter \"irradiance\" \"normal n\" [0 0 -1] \"string name\" \"m\"\n");
     pid_t pid = start("measure long.pbrt --samples 100000000000 -q");
     nanosleep(&(struct timespec){.tv_sec = 2}, NULL);
     kill(pid, SIGINT);

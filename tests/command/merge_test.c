@@ -60,13 +60,16 @@ TEST(even_parts_by_number_cover_all_samples)
     run_expecting(0, "render " CORNELL SMALL "-o whole.exr --replicates 11 --pixelbounds 3,20,4,19 --seed 9");
     for (int k = 1; k <= 4; ++k) {
         char text[400];
-        snprintf(text, sizeof text, "render " CORNELL SMALL "--replicates 11 --pixelbounds 3,20,4,19 --seed 9 --part %d/4 -o p%d.srp", k, k);
+        snprintf(text, sizeof text,
+                 "render " CORNELL SMALL "--replicates 11 --pixelbounds 3,20,4,19 --seed 9 --part %d/4 -o p%d.srp", k,
+                 k);
         run_expecting(0, text);
     }
     const struct said *s = run_expecting(0, "merge p1.srp p2.srp p3.srp p4.srp -o merged.exr --json");
     EXPECT_SAYS(s->err, "4 parts: 17 x 15 pixels, 22 of 22 samples each");
     json_t *j = json_of(s);
-    EXPECT(json_is_true(json_object_get(j, "complete")) && json_array_size(json_object_get(j, "parts")) == 4 && json_array_size(json_object_get(j, "missing")) == 0);
+    EXPECT(json_is_true(json_object_get(j, "complete")) && json_array_size(json_object_get(j, "parts")) == 4 &&
+           json_array_size(json_object_get(j, "missing")) == 0);
     EXPECT_EQUAL_TEXT(json_string_value(json_object_get(json_object_get(j, "identity"), "seed")), "9");
     EXPECT_EQUAL_INT(json_integer_value(json_object_get(json_object_get(j, "counts"), "paths")), 17 * 15 * 22);
     json_decref(j);
@@ -77,7 +80,8 @@ TEST(even_parts_by_number_cover_all_samples)
 TEST(a_part_that_was_killed_goes_on)
 {
     char part[400], text[500];
-    snprintf(part, sizeof part, "render " CORNELL " --resolution 40,40 --spp %d --sample-range %d-%d -q", is_slow_build() ? 40 : 400, 3, is_slow_build() ? 30 : 300);
+    snprintf(part, sizeof part, "render " CORNELL " --resolution 40,40 --spp %d --sample-range %d-%d -q",
+             is_slow_build() ? 40 : 400, 3, is_slow_build() ? 30 : 300);
     snprintf(text, sizeof text, "%s -o uncut.srp", part);
     run_expecting(0, text);
     snprintf(text, sizeof text, "%s -o killed.srp --checkpoint-interval 0.02 --threads 1", part);
@@ -139,7 +143,9 @@ TEST(foreign_parts_are_refused_by_name)
         EXPECT_SAYS(s->err, "g.srp: is of another picture than f.srp");
         EXPECT_SAYS(s->err, foreign[i].told);
     }
-    put_file("other.pbrt", "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 24\nCamera \"perspective\"\nWorldBegin\nShape \"sphere\"\n");
+    put_file(
+        "other.pbrt",
+        "Film \"rgb\" \"integer xresolution\" 32 \"integer yresolution\" 24\nCamera \"perspective\"\nWorldBegin\nShape \"sphere\"\n");
     run_expecting(0, "render other.pbrt --spp 22 -q -o g.srp --sample-range 11-22");
     EXPECT_SAYS(run_expecting(3, "merge f.srp g.srp -o none.exr")->err, "its scene.hash is ");
     EXPECT_EQUAL_INT(count_files("none.exr"), 0);
@@ -149,7 +155,8 @@ TEST(parts_that_overlap_are_refused)
 {
     run_expecting(0, "render " CORNELL SMALL "-o o1.srp --sample-range 0-11");
     run_expecting(0, "render " CORNELL SMALL "-o o2.srp --sample-range 10-22");
-    EXPECT_SAYS(run_expecting(3, "merge o1.srp o2.srp -o none.exr")->err, "o2.srp: has samples 10-22, of which o1.srp has 0-11 already");
+    EXPECT_SAYS(run_expecting(3, "merge o1.srp o2.srp -o none.exr")->err,
+                "o2.srp: has samples 10-22, of which o1.srp has 0-11 already");
     EXPECT_SAYS(run_expecting(3, "merge o1.srp o1.srp -o none.exr")->err, "o1.srp has 0-11 already");
     EXPECT_EQUAL_INT(count_files("none.exr"), 0);
 }

@@ -108,10 +108,14 @@ TEST(render_aims_at_an_error_and_tells_when_it_missed)
     EXPECT(json_is_true(json_object_get(json_object_get(j, "settings"), "adaptive")));
     EXPECT(number_at(j, "settings", "spp") > 40);
     json_decref(j);
-    EXPECT_SAYS(run_expecting(1, "render " CORNELL " --resolution 8,8 --error 0.1% --spp 16 -o c.exr")->err, "aimed at 0.1 %: missed");
-    EXPECT_SAYS(run_expecting(0, "render " CORNELL " --resolution 8,8 --adaptive --spp 16 -o c.exr")->err, "samples each on average");
-    EXPECT_SAYS(run_expecting(0, "render " CORNELL " --resolution 8,8 --time 0.2s -o c.exr")->err, "relative error of the picture");
-    EXPECT_SAYS(run_expecting(2, "render " CORNELL " --error 200% -o c.exr")->err, "a share such as 0.1% or 0.001 was expected");
+    EXPECT_SAYS(run_expecting(1, "render " CORNELL " --resolution 8,8 --error 0.1% --spp 16 -o c.exr")->err,
+                "aimed at 0.1 %: missed");
+    EXPECT_SAYS(run_expecting(0, "render " CORNELL " --resolution 8,8 --adaptive --spp 16 -o c.exr")->err,
+                "samples each on average");
+    EXPECT_SAYS(run_expecting(0, "render " CORNELL " --resolution 8,8 --time 0.2s -o c.exr")->err,
+                "relative error of the picture");
+    EXPECT_SAYS(run_expecting(2, "render " CORNELL " --error 200% -o c.exr")->err,
+                "a share such as 0.1% or 0.001 was expected");
     run_expecting(2, "render " CORNELL " --time soon -o c.exr");
     run_expecting(2, "render " CORNELL " --adaptive --replicates 4 --spp 8 -o c.exr");
 }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Files cut anywhere, with words swapped, with sizes blown up: each is read, or refused with a reason; nothing crashes, nothing
- * takes more than 16 times the file's size and 64 MiB, nothing takes long.
+/* Files cut anywhere, with words swapped, with sizes blown up: each is read, or refused with a reason; nothing crashes,
+ * nothing takes more than 16 times the file's size and 64 MiB, nothing takes long.
  *
- * Each file is damaged in a process of its own, in a folder whose other entries lead to those of the file's own folder, so that
- * meshes and images are found. Reading is held by a limit of the address space; building (some of the damaged files) by the
- * memory that was in use, in which the ray caster's hierarchy counts as well. */
+ * Each file is damaged in a process of its own, in a folder whose other entries lead to those of the file's own folder,
+ * so that meshes and images are found. Reading is held by a limit of the address space; building (some of the damaged
+ * files) by the memory that was in use, in which the ray caster's hierarchy counts as well. */
 #define _GNU_SOURCE
 #include "import/describe.h"
 #include "import/pbrt/description.h"
@@ -104,11 +104,14 @@ static void swap_words(struct bytes *b)
 /* a number that is much too large, in place of one that is there */
 static void blow_up(struct bytes *b)
 {
-    static const char *const huge[] = {"4294967295", "2147483647", "-1", "99999999999999999999", "1e38", "1e308", "1000000000", "nan"};
+    static const char *const huge[] = {"4294967295", "2147483647", "-1",         "99999999999999999999",
+                                       "1e38",       "1e308",      "1000000000", "nan"};
     if (!is_text(b)) {
         static const uint32_t words[] = {0xffffffffu, 0x7fffffffu, 0x10000000u, 0x7f800000u, 100000000u};
         if (b->size > 8)
-            memcpy(b->data + (draw(2) ? draw(256 < b->size - 4 ? 256 : (uint32_t)b->size - 4) : draw((uint32_t)b->size - 4)), &words[draw(5)], 4);
+            memcpy(b->data +
+                       (draw(2) ? draw(256 < b->size - 4 ? 256 : (uint32_t)b->size - 4) : draw((uint32_t)b->size - 4)),
+                   &words[draw(5)], 4);
         return;
     }
     for (int tries = 0; tries < 50; ++tries) {
@@ -211,7 +214,8 @@ static void torture(const char *path, const char *copy, const struct bytes *whol
         if (!f || fwrite(b.data, 1, b.size, f) != b.size || fclose(f) != 0)
             _exit(2);
         free(b.data);
-        bool builds = v % ((VARIANTS + BUILDS - 1) / BUILDS) == 5 % ((VARIANTS + BUILDS - 1) / BUILDS) && whole->size + folder_B < (size_t)4 << 20;
+        bool builds = v % ((VARIANTS + BUILDS - 1) / BUILDS) == 5 % ((VARIANTS + BUILDS - 1) / BUILDS) &&
+                      whole->size + folder_B < (size_t)4 << 20;
         setitimer(ITIMER_PROF, &(struct itimerval){.it_value = {.tv_sec = SECONDS}}, NULL); // of the processor
         const char *verdict = read_one(copy, b.size + (is_gltf ? folder_B : 0), builds);
         if (verdict) {
@@ -284,7 +288,8 @@ static void try_file(const char *path, size_t most_B)
         EXPECT(waitpid(pid, &status, 0) == pid);
         remove_links();
         if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-            test_fail(__FILE__, __LINE__, "%s: %s %d", path, WIFEXITED(status) ? "code" : "signal", WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status));
+            test_fail(__FILE__, __LINE__, "%s: %s %d", path, WIFEXITED(status) ? "code" : "signal",
+                      WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status));
     } else
         remove_links();
     sr_free(whole.data);
@@ -304,7 +309,8 @@ static int visit(const char *path, const struct stat *status, int type, struct F
     }
     bool is_mesh = sr_path_has_ending(path, ".ply") || sr_path_has_ending(path, ".glb");
     for (size_t i = 0; i < sizeof endings / sizeof *endings; ++i)
-        if (sr_path_has_ending(path, endings[i]) && (!sr_path_has_ending(path, ".ply") || per_folder++ < 2)) // some meshes of each scene are enough
+        if (sr_path_has_ending(path, endings[i]) &&
+            (!sr_path_has_ending(path, ".ply") || per_folder++ < 2)) // some meshes of each scene are enough
             try_file(path, is_mesh ? (size_t)600 << 10 : (size_t)2 << 20);
     (void)status;
     return 0;
@@ -356,11 +362,13 @@ TEST(damaged_meshes_of_other_formats_are_read_or_refused)
         return;
     p += sprintf(p, "mtllib none.mtl\n");
     for (int i = 0; i < N * N; ++i)
-        p += sprintf(p, "v %g %g %g\nvt %g %g\nvn 0 0 1\n", i % N * 0.1, i / N * 0.1, (i * 37 % 11) * 0.01, i % N / 40.0, i / N / 40.0);
+        p += sprintf(p, "v %g %g %g\nvt %g %g\nvn 0 0 1\n", i % N * 0.1, i / N * 0.1, (i * 37 % 11) * 0.01,
+                     i % N / 40.0, i / N / 40.0);
     for (int i = 0; i + N + 1 < N * N; ++i) {
         if (i % 200 == 0)
             p += sprintf(p, "g part%d\nusemtl m%d\n", i, i % 3);
-        p += sprintf(p, "f %d/%d/%d %d/%d/%d -%d %d//%d\n", i + 1, i + 1, i + 1, i + 2, i + 2, i + 2, N * N - i - N - 1, i + N + 1, 1);
+        p += sprintf(p, "f %d/%d/%d %d/%d/%d -%d %d//%d\n", i + 1, i + 1, i + 1, i + 2, i + 2, i + 2, N * N - i - N - 1,
+                     i + N + 1, 1);
     }
     p += sprintf(p, "f");
     for (int i = 1; i < 600; ++i)
@@ -369,7 +377,9 @@ TEST(damaged_meshes_of_other_formats_are_read_or_refused)
     put("grid.obj", text, (size_t)(p - text));
     p = text + sprintf(text, "solid grid\n");
     for (int i = 0; i < 500; ++i)
-        p += sprintf(p, "facet normal 0 0 1\nouter loop\nvertex %d 0 0\nvertex %d 1 0\nvertex %d 0.5 1\nendloop\nendfacet\n", i, i, i + 1);
+        p += sprintf(
+            p, "facet normal 0 0 1\nouter loop\nvertex %d 0 0\nvertex %d 1 0\nvertex %d 0.5 1\nendloop\nendfacet\n", i,
+            i, i + 1);
     put("text.stl", text, (size_t)(p - text));
     memset(text, 0, 84 + 50 * 500);
     text[80] = (char)(500 & 255);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Images that are damaged, and images that lie about their size: read, or refused with a reason, in memory that follows from the bytes
- * of the file: 16 times those and 64 MiB, and as much as the pixels that are there.
+/* Images that are damaged, and images that lie about their size: read, or refused with a reason, in memory that follows
+ * from the bytes of the file: 16 times those and 64 MiB, and as much as the pixels that are there.
  *
  * Each is read in a process whose address space is limited. */
 #define _GNU_SOURCE
@@ -161,7 +161,8 @@ static void expect_refused(const struct liar *l)
 TEST(images_that_lie_about_their_size_are_refused_before_memory_is_taken)
 {
     static struct liar l;
-    static const uint32_t sides[][2] = {{1000000000, 1000000000}, {0x7fffffff, 1}, {1, 0x7fffffff}, {65535, 65535}, {30000, 30000}, {8000000, 20}, {0, 5}};
+    static const uint32_t sides[][2] = {{1000000000, 1000000000}, {0x7fffffff, 1}, {1, 0x7fffffff}, {65535, 65535},
+                                        {30000, 30000},           {8000000, 20},   {0, 5}};
     liar_count = 0;
     for (size_t i = 0; i < sizeof sides / sizeof *sides; ++i) {
         uint32_t w = sides[i][0], h = sides[i][1], big[2] = {__builtin_bswap32(w), __builtin_bswap32(h)};
@@ -176,7 +177,8 @@ TEST(images_that_lie_about_their_size_are_refused_before_memory_is_taken)
         snprintf(text, sizeof text, "PF\n%u %u\n-1.0\n0123456789abcdef", w, h);
         make_text(&l, "liar.pfm", text);
         expect_refused(&l);
-        snprintf(text, sizeof text, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %u +X %u\n\1\2\3\4\1\1\1\377\1\1\1\377\1\1\1\377", h, w);
+        snprintf(text, sizeof text,
+                 "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %u +X %u\n\1\2\3\4\1\1\1\377\1\1\1\377\1\1\1\377", h, w);
         make_text(&l, "liar.hdr", text);
         expect_refused(&l);
         make_seeded(&l, 5, "liar.qoi");
@@ -224,7 +226,8 @@ TEST(an_honest_image_of_one_colour_may_be_large)
     memcpy(file + 41 + n, &word, 4);
     memcpy(file + 45 + n, "\0\0\0\0IEND\xae\x42\x60\x82", 12);
     EXPECT_EQUAL_INT(judge_alone("honest.png", file, n + 57, free_B + ((size_t)SIDE * SIDE * 16)), 0);
-    EXPECT_EQUAL_INT(judge_alone("cut.png", file, n / 2, free_B), 1); // half of it: refused before memory for the whole is taken
+    EXPECT_EQUAL_INT(judge_alone("cut.png", file, n / 2, free_B),
+                     1); // half of it: refused before memory for the whole is taken
     free(l);
     free(zeros);
     free(packed);

@@ -67,7 +67,8 @@ static bool needs_files(const struct sr_bsdf_model *m)
 static float narrowest = 0.2f; // [1] slope width that is drawn where not sharp
 
 /* Draws parameters. Slopes: sharp with that probability (a mirror or narrower than quadratures resolve), else from
- * the narrowest to 1, and indices not near 1, where refraction is as sharp as a mirror. Walks as long as the table allows, so that f and sample are truncated alike. */
+ * the narrowest to 1, and indices not near 1, where refraction is as sharp as a mirror. Walks as long as the table
+ * allows, so that f and sample are truncated alike. */
 static struct sr_bsdf draw(const struct sr_bsdf_model *model, struct sr_rng *rng, float sharp)
 {
     struct sr_bsdf b = {.model = model};
@@ -245,8 +246,8 @@ TEST(bsdf_does_not_make_light)
     }
 }
 
-/* Cells of the sphere that are the smaller the more samples fall there, so that a lobe is seen however narrow it is: a tree
- * of rectangles of s = 1 - cos theta and phi, which are even in solid angle. */
+/* Cells of the sphere that are the smaller the more samples fall there, so that a lobe is seen however narrow it is: a
+ * tree of rectangles of s = 1 - cos theta and phi, which are even in solid angle. */
 enum { CELLS = 40000, SEEDS = 20000, FULL = 50, LEAST_DEPTH = 3, MOST_DEPTH = 26 };
 struct cell {
     double s, phi, ds, dphi; // begin and extent
@@ -323,8 +324,8 @@ static double probability_of(const struct sr_bsdf *b, sr_vec3 wo, double s, doub
     return sum;
 }
 
-/* Samples fall as the density says (Pearson's chi-square); the rest are mirrored or absorbed. Half of the lobes are as narrow
- * as alpha = 0.01. */
+/* Samples fall as the density says (Pearson's chi-square); the rest are mirrored or absorbed. Half of the lobes are as
+ * narrow as alpha = 0.01. */
 TEST(bsdf_sampler_follows_its_pdf)
 {
     FOR_EACH_MODEL(m)

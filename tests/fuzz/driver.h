@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What fuzz programs whose seeds are files share: libFuzzer's entry, and a driver of our own where the compiler has none. Included last,
- * once, after
+/* What fuzz programs whose seeds are files share: libFuzzer's entry, and a driver of our own where the compiler has
+ * none. Included last, once, after
  *
  *     static void judge(const uint8_t *bytes, size_t size);     aborts where a reader does what it must not
  *     static void make_seed(int number, struct seed *seed);

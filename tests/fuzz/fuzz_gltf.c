@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* glTF files: whatever the bytes, the reader says what is wrong or gives shapes whose indices and runs are whole, in memory
- * that the size of the file bounds.
+/* glTF files: whatever the bytes, the reader says what is wrong or gives shapes whose indices and runs are whole, in
+ * memory that the size of the file bounds.
  *
  * FUZZ_SEED: 0 text with a buffer in it, 1 GLB. Runs as fuzz_measured.c does. */
 #include "fuzz/gltf_seeds.h"
@@ -11,9 +11,11 @@
 
 static void judge_shape(const struct sr_pbrt_shape *s)
 {
-    const struct sr_pbrt_param *P = sr_pbrt_find(&s->entity.params, "P"), *indices = sr_pbrt_find(&s->entity.params, "indices");
+    const struct sr_pbrt_param *P = sr_pbrt_find(&s->entity.params, "P"),
+                               *indices = sr_pbrt_find(&s->entity.params, "indices");
     const struct sr_pbrt_param *uv = sr_pbrt_find(&s->entity.params, "uv"), *N = sr_pbrt_find(&s->entity.params, "N");
-    if (!P || !indices || P->count % 3 || indices->count % 3 || (uv && 3 * uv->count != 2 * P->count) || (N && N->count != P->count))
+    if (!P || !indices || P->count % 3 || indices->count % 3 || (uv && 3 * uv->count != 2 * P->count) ||
+        (N && N->count != P->count))
         abort();
     for (uint32_t i = 0; i < indices->count; ++i)
         if (indices->ints[i] < 0 || (uint32_t)indices->ints[i] >= P->count / 3)

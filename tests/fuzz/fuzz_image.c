@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Images: whatever the bytes, the reader says what is wrong or gives an image whose pixels are all there, of a size that the file
- * can back.
+/* Images: whatever the bytes, the reader says what is wrong or gives an image whose pixels are all there, of a size
+ * that the file can back.
  *
  * FUZZ_SEED: 0 EXR, 1 PNG, 2 JPEG, 3 PFM, 4 HDR, 5 QOI, 6 TGA. Runs as fuzz_measured.c does. */
 #include "fuzz/image_seeds.h"
@@ -26,7 +26,8 @@ static void judge(const uint8_t *data, size_t size)
     struct sr_image *image;
     snprintf(label, sizeof label, "file%s", seed_image_endings[FUZZ_SEED]);
     sr_status status = sr_image_decode(label, data, size, SR_IMAGE_SRGB, &image, &error);
-    if ((status == SR_OK) != (error.status == SR_OK) || (status == SR_OK) != (image != NULL) || (status != SR_OK && !error.text[0]))
+    if ((status == SR_OK) != (error.status == SR_OK) || (status == SR_OK) != (image != NULL) ||
+        (status != SR_OK && !error.text[0]))
         abort(); // a refusal has a reason
     if (status == SR_OK) {
         size_t count = (size_t)image->width * image->height * image->channel_count;

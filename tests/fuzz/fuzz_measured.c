@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* One fuzz target a reader: whatever the bytes, it says what is wrong or gives an f that is finite and not negative.
  *
- * FUZZ_SEED is the format's number in seeds.h. With libFuzzer (clang) this is its target; without, a driver of our own damages
- * the seed over and over for the seconds that are told: fuzz_X SECONDS [RANDOM SEED]. With libFuzzer: fuzz_X --seed FILE writes
- * the seed for the corpus. */
+ * FUZZ_SEED is the format's number in seeds.h. With libFuzzer (clang) this is its target; without, a driver of our own
+ * damages the seed over and over for the seconds that are told: fuzz_X SECONDS [RANDOM SEED]. With libFuzzer: fuzz_X
+ * --seed FILE writes the seed for the corpus. */
 #include "fuzz/seeds.h"
 #include "measured/private.h"
 

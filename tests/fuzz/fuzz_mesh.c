@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* OBJ and STL: whatever the bytes, the reader says what is wrong, or gives a scene whose triangles name vertices that are there,
- * all of them somewhere, within the memory that the file's size allows.
+/* OBJ and STL: whatever the bytes, the reader says what is wrong, or gives a scene whose triangles name vertices that
+ * are there, all of them somewhere, within the memory that the file's size allows.
  *
  * FUZZ_SEED: 0 OBJ, 1 STL as text, 2 STL in bytes. Runs as fuzz_measured.c does. */
 #include "fuzz/seeds.h"
@@ -14,14 +14,20 @@ static void mesh_seed(int which, struct seed *s)
 {
     s->size = 0;
     if (which == 0) {
-        seed_print(s, "mtllib none.mtl\no a\nv 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nv .5 .2 0\nvt 0 0\nvt 1 0 0\nvt 1 1\nvn 0 0 1\n");
+        seed_print(
+            s,
+            "mtllib none.mtl\no a\nv 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nv .5 .2 0\nvt 0 0\nvt 1 0 0\nvt 1 1\nvn 0 0 1\n");
         s->header = s->size;
-        seed_print(s, "f 1/1/1 2/2/1 3/3/1 4//1\nusemtl m\nf -5 -4 -3 -2 -1\ng b c\nf 1 2 3 \\\n 4 5\n# end\nf 5 4 1\n");
+        seed_print(s,
+                   "f 1/1/1 2/2/1 3/3/1 4//1\nusemtl m\nf -5 -4 -3 -2 -1\ng b c\nf 1 2 3 \\\n 4 5\n# end\nf 5 4 1\n");
     } else if (which == 1) {
         seed_print(s, "solid x\n");
         s->header = s->size;
         for (int i = 0; i < 3; ++i)
-            seed_print(s, "facet normal 0 0 1\nouter loop\nvertex %d 0 0\nvertex 1 %d 0\nvertex 0 1e-3 -2.5\nendloop\nendfacet\n", i, i);
+            seed_print(
+                s,
+                "facet normal 0 0 1\nouter loop\nvertex %d 0 0\nvertex 1 %d 0\nvertex 0 1e-3 -2.5\nendloop\nendfacet\n",
+                i, i);
     } else {
         s->size = s->header = 84;
         memset(s->data, 0, 84);
@@ -34,7 +40,8 @@ static void mesh_seed(int which, struct seed *s)
 
 static void judge_shape(const struct sr_pbrt_shape *shape)
 {
-    const struct sr_pbrt_param *P = sr_pbrt_find(&shape->entity.params, "P"), *indices = sr_pbrt_find(&shape->entity.params, "indices");
+    const struct sr_pbrt_param *P = sr_pbrt_find(&shape->entity.params, "P"),
+                               *indices = sr_pbrt_find(&shape->entity.params, "indices");
     if (!P || !indices || P->count % 3 || indices->count % 3)
         abort();
     for (uint32_t i = 0; i < P->count; ++i)

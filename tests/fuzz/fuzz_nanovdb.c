@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Sparse volumes: however a NanoVDB file is damaged, the reader says what is wrong or gives a grid that is finite everywhere, and takes
- * no more memory than such a file may.
+/* Sparse volumes: however a NanoVDB file is damaged, the reader says what is wrong or gives a grid that is finite
+ * everywhere, and takes no more memory than such a file may.
  *
- * A tree is 300 kB long, most of it zeros, so the input is not the file but damage to a valid one: four bytes say where it is cut (0:
- * nowhere), then eight at a time a place and what stands there. With libFuzzer this is its target; without, a driver of our
- * own makes the damage for the seconds that are told: fuzz_nanovdb SECONDS [RANDOM SEED]. */
+ * A tree is 300 kB long, most of it zeros, so the input is not the file but damage to a valid one: four bytes say where
+ * it is cut (0: nowhere), then eight at a time a place and what stands there. With libFuzzer this is its target;
+ * without, a driver of our own makes the damage for the seconds that are told: fuzz_nanovdb SECONDS [RANDOM SEED]. */
 #include "base/base.h"
 #include "medium/sparse.h"
 #include "sample/sample.h"
@@ -21,7 +21,13 @@ static float value(int i, int j, int k)
 
 static void make_file(void)
 {
-    struct nanovdb_spec spec = {.name = "density", .type = 1, .lo = {100, 0, 0}, .hi = {140, 9, 17}, .value = value, .has_tiles = true, .matrix = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    struct nanovdb_spec spec = {.name = "density",
+                                .type = 1,
+                                .lo = {100, 0, 0},
+                                .hi = {140, 9, 17},
+                                .value = value,
+                                .has_tiles = true,
+                                .matrix = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
     struct nanovdb_spec packed = spec;
     packed.name = "temperature";
     packed.type = 16;
@@ -43,8 +49,10 @@ static void judge_grid(const uint8_t *data, size_t size, const char *name)
         struct sr_rng rng = sr_rng_seed(size, 1);
         for (int i = 0; i < 200; ++i) {
             float wide = i % 8 ? 300 : 1e9f;
-            sr_vec3 p = {wide * (sr_rng_float(&rng) - 0.5f), wide * (sr_rng_float(&rng) - 0.5f), wide * (sr_rng_float(&rng) - 0.5f)};
-            const double lo[3] = {(double)p.x, (double)p.y, (double)p.z}, hi[3] = {(double)p.x + 9, (double)p.y + 3, (double)p.z + 1};
+            sr_vec3 p = {wide * (sr_rng_float(&rng) - 0.5f), wide * (sr_rng_float(&rng) - 0.5f),
+                         wide * (sr_rng_float(&rng) - 0.5f)};
+            const double lo[3] = {(double)p.x, (double)p.y, (double)p.z},
+                         hi[3] = {(double)p.x + 9, (double)p.y + 3, (double)p.z + 1};
             float v = sr_sparse_at(&g, p);
             if (!isfinite(v) || v > sr_sparse_largest(&g, lo, hi) * 1.0001f + 1e-30f)
                 abort();
@@ -88,7 +96,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 static size_t make_damage(uint8_t input[128], struct sr_rng *rng)
 {
     static const uint32_t starts[] = {0, VDB_META + VDB_META_B};
-    static const uint32_t words[] = {0, 1, 0x7fffffff, 0x80000000, 0xffffffff, 0x7f800000, 0x7fc00000, 0xff7fffff, 0xe0000000};
+    static const uint32_t words[] = {0,          1,          0x7fffffff, 0x80000000, 0xffffffff,
+                                     0x7f800000, 0x7fc00000, 0xff7fffff, 0xe0000000};
     size_t size = 4;
     memset(input, 0, 128);
     if (sr_rng_u32(rng) % 8 == 0) {
@@ -97,7 +106,8 @@ static size_t make_damage(uint8_t input[128], struct sr_rng *rng)
     }
     uint32_t second = (uint32_t)(file.size / 2), count = 1 + sr_rng_u32(rng) % 6;
     for (uint32_t i = 0; i < count; ++i, size += 8) {
-        uint32_t which = sr_rng_u32(rng) % 4, place = starts[which % 2] + sr_rng_u32(rng) % 1024 / 4 * 4, word = words[sr_rng_u32(rng) % 9];
+        uint32_t which = sr_rng_u32(rng) % 4, place = starts[which % 2] + sr_rng_u32(rng) % 1024 / 4 * 4,
+                 word = words[sr_rng_u32(rng) % 9];
         if (which == 2) // anywhere that is not 0 already, nearly
             for (int trial = 0; trial < 4000; ++trial) {
                 place = sr_rng_u32(rng) % (uint32_t)file.size;

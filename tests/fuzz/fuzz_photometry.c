@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Luminaire files: whatever the bytes, the reader says what is wrong or gives intensities that are finite, a flux, a report,
- * directions to draw, and a file that reads back.
+/* Luminaire files: whatever the bytes, the reader says what is wrong or gives intensities that are finite, a flux, a
+ * report, directions to draw, and a file that reads back.
  *
  * FUZZ_SEED: 0 IES of type C, 1 of type B, 2 EULUMDAT. Runs as fuzz_measured.c does. */
 #include "fuzz/seeds.h"
@@ -14,10 +14,14 @@ static void photometry_seed(int which, struct seed *s)
 {
     s->size = 0;
     if (which < 2) {
-        seed_print(s, "IESNA:LM-63-1995\n[MANUFAC] Formula & Sons\n[MORE] of numbers\nTILT=INCLUDE\n1\n2\n0 90\n1 0.9\n");
-        seed_print(s, which ? "1 -1 1 5 3 2 1 .5 1 0\n1 1 20\n-90 -45 0 45 90\n0 45 90\n" : "2 500 1.5 4 5 1 2 -0.3 -.3 0\n0.9 1 20\n0 30 60 90\n0 90 180 270 360\n");
+        seed_print(s,
+                   "IESNA:LM-63-1995\n[MANUFAC] Formula & Sons\n[MORE] of numbers\nTILT=INCLUDE\n1\n2\n0 90\n1 0.9\n");
+        seed_print(s, which ? "1 -1 1 5 3 2 1 .5 1 0\n1 1 20\n-90 -45 0 45 90\n0 45 90\n"
+                            : "2 500 1.5 4 5 1 2 -0.3 -.3 0\n0.9 1 20\n0 30 60 90\n0 90 180 270 360\n");
     } else {
-        seed_print(s, "Maker\n3\n4\n8\n45\n4\n30\nr\nname\nn\nfile\ndate\n100\n0\n50\n80\n40,5\n0\n0\n0\n0\n100\n80\n1,0\n0\n1\n1\nLED\n1500\n3000K\n80\n10\n");
+        seed_print(
+            s,
+            "Maker\n3\n4\n8\n45\n4\n30\nr\nname\nn\nfile\ndate\n100\n0\n50\n80\n40,5\n0\n0\n0\n0\n100\n80\n1,0\n0\n1\n1\nLED\n1500\n3000K\n80\n10\n");
         seed_print(s, "0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n45\n90\n135\n180\n225\n270\n315\n0\n30\n60\n90\n");
     }
     s->header = s->size;
@@ -46,7 +50,8 @@ static void judge(const uint8_t *data, size_t size)
         }
         if (hash % 64 == 0) { // slow
             sr_photometry_report(p, &report);
-            if (!(report.flux > 0 && report.flux_down <= report.flux * 1.0001 && report.beam[0] <= report.field[0] + 1e-6 && report.field[1] <= 360.001))
+            if (!(report.flux > 0 && report.flux_down <= report.flux * 1.0001 &&
+                  report.beam[0] <= report.field[0] + 1e-6 && report.field[1] <= 360.001))
                 abort();
             if (sr_photometry_guide_build(p, &arena, &guide))
                 for (int i = 0; i < 64; ++i) {
@@ -62,7 +67,8 @@ static void judge(const uint8_t *data, size_t size)
             struct sr_error reason = {0};
             if (sr_photometry_print(p, (enum sr_photometry_format)format, &text, &length, &reason) == SR_OK &&
                 sr_photometry_parse("again", text, length, &again, &q, &reason) == SR_OK &&
-                fabs(sr_photometry_flux(q, 0, 180) - sr_photometry_flux(p, 0, 180)) > 1e-3 * sr_photometry_flux(p, 0, 180))
+                fabs(sr_photometry_flux(q, 0, 180) - sr_photometry_flux(p, 0, 180)) >
+                    1e-3 * sr_photometry_flux(p, 0, 180))
                 abort();
             sr_free(text);
         }

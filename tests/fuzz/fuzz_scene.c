@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Scenes as text, and the small files that they name: whatever the bytes, they are read, built and rendered, or refused with a
- * reason.
+/* Scenes as text, and the small files that they name: whatever the bytes, they are read, built and rendered, or refused
+ * with a reason.
  *
- * FUZZ_SEED: 0 pbrt text, as a description; 1 a whole scene, built, with one sample rendered of each pixel; 2 the tables that a scene
- * names: by its first byte a spectrum, a lens, a material library of OBJ, or anything packed by gzip; 3 a PLY mesh. The
- * scene includes itself, which must be found out. Runs as fuzz_measured.c does. */
+ * FUZZ_SEED: 0 pbrt text, as a description; 1 a whole scene, built, with one sample rendered of each pixel; 2 the
+ * tables that a scene names: by its first byte a spectrum, a lens, a material library of OBJ, or anything packed by
+ * gzip; 3 a PLY mesh. The scene includes itself, which must be found out. Runs as fuzz_measured.c does. */
 #define _GNU_SOURCE
 #include "fuzz/scene_seeds.h"
 #include "fuzz/seeds.h"
@@ -25,8 +25,12 @@ static int variant; // of the tables
 
 static void pack(struct seed *s)
 {
-    z_stream z = {.next_in = (Bytef *)(uintptr_t)seed_scene_body, .avail_in = sizeof seed_scene_body, .next_out = s->data + s->size, .avail_out = (uInt)(SEED_SIZE - s->size)};
-    if (deflateInit2(&z, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) != Z_OK || deflate(&z, Z_FINISH) != Z_STREAM_END)
+    z_stream z = {.next_in = (Bytef *)(uintptr_t)seed_scene_body,
+                  .avail_in = sizeof seed_scene_body,
+                  .next_out = s->data + s->size,
+                  .avail_out = (uInt)(SEED_SIZE - s->size)};
+    if (deflateInit2(&z, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) != Z_OK ||
+        deflate(&z, Z_FINISH) != Z_STREAM_END)
         exit(4);
     s->size += z.total_out;
     deflateEnd(&z);
@@ -106,8 +110,18 @@ static void judge_scene(const void *data, size_t size)
     sr_status status = sr_import_pbrt(OUTER_NAME, &options, &r, NULL, &error);
     judge_status(status, &error);
     if (status == SR_OK) {
-        struct sr_render_job job = {.scene = r.scene, .sensor = r.sensor, .filter = r.filter, .integrator = r.integrator, .film = r.film, .sampler = r.sampler,
-                                    .seed = r.seed, .spp = 1, .lambda = {360, 830}, .jitter_pixel = true, .jitter_lambda = true, .threads = 1};
+        struct sr_render_job job = {.scene = r.scene,
+                                    .sensor = r.sensor,
+                                    .filter = r.filter,
+                                    .integrator = r.integrator,
+                                    .film = r.film,
+                                    .sampler = r.sampler,
+                                    .seed = r.seed,
+                                    .spp = 1,
+                                    .lambda = {360, 830},
+                                    .jitter_pixel = true,
+                                    .jitter_lambda = true,
+                                    .threads = 1};
         struct sr_film *film = NULL;
         struct sr_render_report report;
         if ((uint64_t)r.film.width * r.film.height <= 64 && r.scene)
@@ -162,7 +176,9 @@ static void judge_table(const uint8_t *data, size_t size)
         judge_named("WorldBegin LightSource \"infinite\" \"spectrum L\" \"" INNER_NAME "\"\n", data + 1, size - 1);
         break;
     case 1:
-        judge_named("Camera \"realistic\" \"string lensfile\" \"" INNER_NAME "\" \"float aperturediameter\" 3\nWorldBegin\n", data + 1, size - 1);
+        judge_named("Camera \"realistic\" \"string lensfile\" \"" INNER_NAME
+                    "\" \"float aperturediameter\" 3\nWorldBegin\n",
+                    data + 1, size - 1);
         break;
     case 2:
         judge_library(data + 1, size - 1);
@@ -198,8 +214,10 @@ static void judge_ply(const uint8_t *data, size_t size)
 /* All words that a scene may have, as its text has them. */
 static void write_word(void *context, const struct sr_import_plugin *plugin)
 {
-    static const char *const types[] = {"bool", "integer", "float", "string", "string", "string", "point2", "point3", "vector3", "normal", "rgb", "spectrum", "blackbody", "texture",
-                                        "texture", "texture", "string", "integer", "float", "point2", "point3", "vector3", "normal", "rgb"};
+    static const char *const types[] = {"bool",      "integer", "float",   "string",  "string", "string",
+                                        "point2",    "point3",  "vector3", "normal",  "rgb",    "spectrum",
+                                        "blackbody", "texture", "texture", "texture", "string", "integer",
+                                        "float",     "point2",  "point3",  "vector3", "normal", "rgb"};
     bool is_bare = strcmp(plugin->kind, "directive") == 0;
     if (plugin->name[0])
         fprintf(context, is_bare ? "\"%s \"\n" : "\"\\\"%s\\\" \"\n", plugin->name);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* Files of a part of a picture, and checkpoints: whatever the bytes, they are refused with a reason, or what they hold is whole.
+/* Files of a part of a picture, and checkpoints: whatever the bytes, they are refused with a reason, or what they hold
+ * is whole.
  *
- * Checksums would keep a fuzzer out, so that most inputs are given right ones first, wherever their sections are: what is behind must
- * stand a file that somebody has made on purpose. Runs as fuzz_measured.c does. */
+ * Checksums would keep a fuzzer out, so that most inputs are given right ones first, wherever their sections are: what
+ * is behind must stand a file that somebody has made on purpose. Runs as fuzz_measured.c does. */
 #define _GNU_SOURCE
 #include "fuzz/seeds.h"
 #include "import/import.h"
@@ -58,7 +59,8 @@ static void sign(uint8_t *bytes, size_t size)
 
 static void judge_status(sr_status status, const struct sr_error *error)
 {
-    if ((status == SR_OK) != (error->status == SR_OK) || (status != SR_OK && !error->text[0]) || status == SR_ERROR_RESOURCE)
+    if ((status == SR_OK) != (error->status == SR_OK) || (status != SR_OK && !error->text[0]) ||
+        status == SR_ERROR_RESOURCE)
         abort(); // a refusal has a reason
 }
 
@@ -122,9 +124,20 @@ static void make_seed(int number, struct seed *s)
     if (!make_temporary_folder("fuzz", folder) || sr_import_pbrt(NAME, &options, &r, NULL, &error) != SR_OK)
         exit(4);
     snprintf(path, sizeof path, "%s/part", folder);
-    struct sr_render_job job = {.scene = r.scene, .sensor = r.sensor, .filter = r.filter, .integrator = r.integrator, .film = r.film, .sampler = r.sampler, .spp = 4,
-                                .lambda = {360, 830}, .jitter_pixel = true, .jitter_lambda = true, .threads = 1, .with_aov = number >= 0};
-    if (sr_render_samples(&job, (struct sr_render_range){0, 3}, &part, &report, &error) != SR_OK || sr_render_part_write(part, "a 1\n", "b", path, &error) != SR_OK ||
+    struct sr_render_job job = {.scene = r.scene,
+                                .sensor = r.sensor,
+                                .filter = r.filter,
+                                .integrator = r.integrator,
+                                .film = r.film,
+                                .sampler = r.sampler,
+                                .spp = 4,
+                                .lambda = {360, 830},
+                                .jitter_pixel = true,
+                                .jitter_lambda = true,
+                                .threads = 1,
+                                .with_aov = number >= 0};
+    if (sr_render_samples(&job, (struct sr_render_range){0, 3}, &part, &report, &error) != SR_OK ||
+        sr_render_part_write(part, "a 1\n", "b", path, &error) != SR_OK ||
         sr_file_read(path, SEED_SIZE, &bytes, &size, &error) != SR_OK)
         exit(4);
     unlink(path);

@@ -20,7 +20,8 @@ static inline void encode(const char *ending, bool is_bytes, struct seed *s)
     struct sr_image *image;
     void *data;
     size_t size;
-    if (sr_image_create(SEED_IMAGE_SIDE, SEED_IMAGE_SIDE, 4, NULL, is_bytes ? SR_IMAGE_BYTES : SR_IMAGE_FLOATS, &image, &error) != SR_OK)
+    if (sr_image_create(SEED_IMAGE_SIDE, SEED_IMAGE_SIDE, 4, NULL, is_bytes ? SR_IMAGE_BYTES : SR_IMAGE_FLOATS, &image,
+                        &error) != SR_OK)
         exit(4);
     for (int i = 0; i < SEED_IMAGE_SIDE * SEED_IMAGE_SIDE * 4; ++i)
         if (is_bytes)
@@ -71,8 +72,9 @@ static inline void encode_by_hand(bool is_qoi, struct seed *s)
     seed_put(s, is_qoi ? qoi : tga, is_qoi ? sizeof qoi : sizeof tga);
     s->header = s->size;
     for (int i = 0; i < SEED_IMAGE_SIDE * SEED_IMAGE_SIDE / 4; ++i) {
-        const uint8_t chunk[] = {0xfe, (uint8_t)i, 30, 40, 0xc1, (uint8_t)(i & 63)}; // a colour, twice more, one of before
-        const uint8_t packet[] = {0x83, 10, (uint8_t)i, 30, 255};                    // a colour, four times
+        const uint8_t chunk[] = {0xfe, (uint8_t)i, 30,
+                                 40,   0xc1,       (uint8_t)(i & 63)}; // a colour, twice more, one of before
+        const uint8_t packet[] = {0x83, 10, (uint8_t)i, 30, 255};      // a colour, four times
         seed_put(s, is_qoi ? chunk : packet, is_qoi ? sizeof chunk : sizeof packet);
     }
 }

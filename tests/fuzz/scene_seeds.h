@@ -27,11 +27,14 @@ static const char seed_scene_body[] =
     "#@ Meter \"irradiance\" \"string name\" \"m\" \"point3 p\" [0 0 1] \"normal n\" [0 0 1]\n";
 
 static const char seed_spectrum[] = "# nm value\n360 0.1\n500, 0.4\n\t780 1e-1\n830 2.5E0\n";
-static const char seed_lens[] = "# radius thickness eta diameter\n35.98 1.21 1.54 23.7\n11.69 9.99 1 20.1\n13.08 5.12 1.77 17.9\n-22.58 1.81 1.64 16.6\n0 1.6 0 15\n"
-                           "20.38 1.76 1.6 13\n-24.2 46 0 12.3\n";
-static const char seed_materials[] = "newmtl m\nKd 0.5 .2 1\nKs 1 1 1\nNs 30\nillum 2\nd .5\nNi 1.5\nTf 1 0 1\nmap_Kd -s 1 1 1 none.png\nPm 0.1\nPr .2\nKe 1 1 1\nbump -bm 2 x.png\n";
-static const char seed_ply_head[] = "ply\nformat ascii 1.0\ncomment x\nelement vertex 4\nproperty float x\nproperty float y\nproperty double z\nproperty float u\n"
-                                    "property float v\nelement face 2\nproperty list uchar int vertex_indices\nproperty int face_indices\nend_header\n";
+static const char seed_lens[] =
+    "# radius thickness eta diameter\n35.98 1.21 1.54 23.7\n11.69 9.99 1 20.1\n13.08 5.12 1.77 17.9\n-22.58 1.81 1.64 16.6\n0 1.6 0 15\n"
+    "20.38 1.76 1.6 13\n-24.2 46 0 12.3\n";
+static const char seed_materials[] =
+    "newmtl m\nKd 0.5 .2 1\nKs 1 1 1\nNs 30\nillum 2\nd .5\nNi 1.5\nTf 1 0 1\nmap_Kd -s 1 1 1 none.png\nPm 0.1\nPr .2\nKe 1 1 1\nbump -bm 2 x.png\n";
+static const char seed_ply_head[] =
+    "ply\nformat ascii 1.0\ncomment x\nelement vertex 4\nproperty float x\nproperty float y\nproperty double z\nproperty float u\n"
+    "property float v\nelement face 2\nproperty list uchar int vertex_indices\nproperty int face_indices\nend_header\n";
 static const char seed_ply_body[] = "0 0 0 0 0\n1 0 0 1 0\n1 1 .5 1 1\n0 1 0 0 1\n3 0 1 2 7\n4 0 1 2 3 8\n";
 
 #endif

@@ -191,7 +191,8 @@ static inline uint32_t seed_random(uint64_t *state)
     return (uint32_t)(*state >> 33);
 }
 
-/* One to eight of: a bit turned, a byte replaced, an interesting number, bytes dropped or doubled, a cut, a word exchanged. */
+/* One to eight of: a bit turned, a byte replaced, an interesting number, bytes dropped or doubled, a cut, a word
+ * exchanged. */
 static inline void seed_damage(struct seed *s, uint64_t *state)
 {
     static const int64_t numbers[] = {

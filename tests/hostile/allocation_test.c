@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* When memory ends: of all allocations between the name of a scene and the file of its picture, each fails in a run of its own.
- * Whichever it is, the run ends with SR_ERROR_RESOURCE and a sentence, nothing is left allocated, and no file is half written.
+/* When memory ends: of all allocations between the name of a scene and the file of its picture, each fails in a run of
+ * its own. Whichever it is, the run ends with SR_ERROR_RESOURCE and a sentence, nothing is left allocated, and no file
+ * is half written.
  *
- * Counted are the allocations of the library itself, those of zlib, libpng, OpenEXR and expat that are made through it, and the
- * blocks of Embree's. What other libraries take by malloc is asked for anew in malloc_test.c. */
+ * Counted are the allocations of the library itself, those of zlib, libpng, OpenEXR and expat that are made through it,
+ * and the blocks of Embree's. What other libraries take by malloc is asked for anew in malloc_test.c. */
 #include "test.h"
 
 #include "hostile/scenes.h"
@@ -22,7 +23,8 @@ struct tally {
 
 static void complain(struct tally *t, const char *path, const char *what, const struct sr_error *error)
 {
-    snprintf(t->what, sizeof t->what, "%s, allocation %llu: %s: %s", path, (unsigned long long)t->number, what, error->text);
+    snprintf(t->what, sizeof t->what, "%s, allocation %llu: %s: %s", path, (unsigned long long)t->number, what,
+             error->text);
     _exit(1);
 }
 
@@ -76,11 +78,13 @@ static void try_scene(const char *path)
     int status;
     EXPECT(waitpid(pid, &status, 0) == pid);
     if (WIFSIGNALED(status))
-        test_fail(__FILE__, __LINE__, "%s, allocation %llu: signal %d", path, (unsigned long long)t->number, WTERMSIG(status));
+        test_fail(__FILE__, __LINE__, "%s, allocation %llu: signal %d", path, (unsigned long long)t->number,
+                  WTERMSIG(status));
     if (WEXITSTATUS(status) != 0)
         test_fail(__FILE__, __LINE__, "%s", t->what[0] ? t->what : path);
-    printf("[   NOTE   ] %s: %llu allocations, %llu made to fail, %llu of them did not matter\n", strrchr(path, '/') + 1, (unsigned long long)t->count,
-           (unsigned long long)t->failures, (unsigned long long)t->tolerated);
+    printf("[   NOTE   ] %s: %llu allocations, %llu made to fail, %llu of them did not matter\n",
+           strrchr(path, '/') + 1, (unsigned long long)t->count, (unsigned long long)t->failures,
+           (unsigned long long)t->tolerated);
     munmap(t, sizeof *t);
 }
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Files whose counts do not fit into 32 bits, or into themselves: refused before memory is asked for; and depth without end. */
+/* Files whose counts do not fit into 32 bits, or into themselves: refused before memory is asked for; and depth without
+ * end. */
 #define _GNU_SOURCE
 #include "test.h"
 
@@ -44,12 +45,13 @@ static void expect_refusal(const char *name, const void *data, size_t size, cons
         test_fail(__FILE__, __LINE__, "%s: \"%s\", expected \"%s\"", name, text, reason);
 }
 
-#define GLTF(nodes, accessors)                                                                                          \
-    "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"uri\":\"data:application/octet-stream;base64,"    \
-    "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"          \
-    "\"accessors\":[" accessors "],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],"        \
+#define GLTF(nodes, accessors)                                                                                         \
+    "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"uri\":\"data:application/octet-stream;base64," \
+    "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"         \
+    "\"accessors\":[" accessors "],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],"   \
     "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[" nodes "]}"
-#define CORNERS "{\"bufferView\":0,\"componentType\":5126,\"count\":%s,\"type\":\"VEC3\"},{\"componentType\":5125,\"count\":%s,\"type\":\"SCALAR\"}"
+#define CORNERS                                                                                                        \
+    "{\"bufferView\":0,\"componentType\":5126,\"count\":%s,\"type\":\"VEC3\"},{\"componentType\":5125,\"count\":%s,\"type\":\"SCALAR\"}"
 
 TEST(counts_of_gltf_accessors_are_refused_where_nothing_backs_them)
 {
@@ -73,10 +75,13 @@ TEST(counts_of_ply_elements_are_refused_where_the_file_ends_before)
     static const char *const wrong[] = {"2147483648", "4294967299", "2000000000", "18446744073709551619", "-1"};
     for (int i = 0; i < 10; ++i) {
         char text[1024];
-        int n = snprintf(text, sizeof text, "ply\nformat ascii 1.0\nelement vertex %s\nproperty float x\nproperty float y\nproperty float z\nelement face %s\n"
-                                            "property list uint int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
-                         i & 1 ? "3" : wrong[i / 2], i & 1 ? wrong[i / 2] : "1");
-        expect_refusal("counts.ply", text, (size_t)n, i / 2 < 3 ? "is cut short: its head promises" : "expected \"element NAME COUNT\"");
+        int n = snprintf(
+            text, sizeof text,
+            "ply\nformat ascii 1.0\nelement vertex %s\nproperty float x\nproperty float y\nproperty float z\nelement face %s\n"
+            "property list uint int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+            i & 1 ? "3" : wrong[i / 2], i & 1 ? wrong[i / 2] : "1");
+        expect_refusal("counts.ply", text, (size_t)n,
+                       i / 2 < 3 ? "is cut short: its head promises" : "expected \"element NAME COUNT\"");
     }
 }
 
@@ -86,9 +91,11 @@ TEST(counts_and_indices_of_other_formats_are_refused)
     expect_refusal("counts.obj", corners, sizeof corners - 1, "4294967299 is no vertex");
     static const char below[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -4294967293\n";
     expect_refusal("counts.obj", below, sizeof below - 1, "-4294967293 is no vertex");
-    static const char index[] = "WorldBegin\nShape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 4294967298]\n";
+    static const char index[] =
+        "WorldBegin\nShape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 4294967298]\n";
     expect_refusal("counts.pbrt", index, sizeof index - 1, "expected a whole number of 32 bits");
-    static const char levels[] = "WorldBegin\nShape \"loopsubdiv\" \"integer levels\" 30 \"point3 P\" [0 0 0 1 0 0 0 1 0 0 0 1] \"integer indices\" [0 1 2 0 1 3 1 2 3 0 2 3]\n";
+    static const char levels[] =
+        "WorldBegin\nShape \"loopsubdiv\" \"integer levels\" 30 \"point3 P\" [0 0 0 1 0 0 0 1 0 0 0 1] \"integer indices\" [0 1 2 0 1 3 1 2 3 0 2 3]\n";
     expect_refusal("counts.pbrt", levels, sizeof levels - 1, "30 \"levels\" make");
     char stl[84 + 500] = {0};
     memset(stl + 80, 0xff, 4);
@@ -132,8 +139,10 @@ TEST(blocks_may_be_nested_and_objects_may_not)
         p += sprintf(p, "AttributeEnd\n");
     EXPECT_EQUAL_TEXT(read_scene("blocks.pbrt", text, (size_t)(p - text), false), "");
     free(text);
-    static const char nested[] = "WorldBegin\nObjectBegin \"a\" Shape \"sphere\" ObjectEnd\nObjectBegin \"b\" ObjectInstance \"a\" ObjectEnd\n";
-    expect_refusal("nested.pbrt", nested, sizeof nested - 1, "nested.pbrt:3:17: ObjectInstance \"a\" inside of an object: expected outside");
+    static const char nested[] =
+        "WorldBegin\nObjectBegin \"a\" Shape \"sphere\" ObjectEnd\nObjectBegin \"b\" ObjectInstance \"a\" ObjectEnd\n";
+    expect_refusal("nested.pbrt", nested, sizeof nested - 1,
+                   "nested.pbrt:3:17: ObjectInstance \"a\" inside of an object: expected outside");
     char *deep = malloc(400000);
     EXPECT(deep != NULL);
     int n = sprintf(deep, "{\"asset\":{\"version\":\"2.0\"},\"extras\":");

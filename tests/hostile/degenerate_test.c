@@ -38,8 +38,16 @@ static struct sr_scene_counts try_scene(const char *text, uint64_t *duplicates)
     messages[0] = 0;
     if (sr_import_pbrt(path, &options, &r, &log, &error) != SR_OK)
         test_fail(__FILE__, __LINE__, "%s", error.text);
-    struct sr_render_job job = {.scene = r.scene, .sensor = r.sensor, .filter = r.filter, .integrator = r.integrator, .film = r.film, .spp = 4,
-                                .lambda = {360, 830}, .jitter_pixel = true, .jitter_lambda = true, .threads = 1};
+    struct sr_render_job job = {.scene = r.scene,
+                                .sensor = r.sensor,
+                                .filter = r.filter,
+                                .integrator = r.integrator,
+                                .film = r.film,
+                                .spp = 4,
+                                .lambda = {360, 830},
+                                .jitter_pixel = true,
+                                .jitter_lambda = true,
+                                .threads = 1};
     struct sr_film *film;
     struct sr_render_report report;
     EXPECT_EQUAL_INT(sr_render(&job, &film, &report, &error), SR_OK);
@@ -56,8 +64,10 @@ static struct sr_scene_counts try_scene(const char *text, uint64_t *duplicates)
 
 TEST(triangles_without_area_are_counted_and_told_by_line)
 {
-    struct sr_scene_counts c = try_scene(CAMERA "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 2 0 0 1e-30 0 0 0 1e-30 0] "
-                                                "\"integer indices\" [0 1 2  0 0 1  0 1 3  0 4 5]\nShape \"sphere\"\n", NULL);
+    struct sr_scene_counts c =
+        try_scene(CAMERA "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 2 0 0 1e-30 0 0 0 1e-30 0] "
+                         "\"integer indices\" [0 1 2  0 0 1  0 1 3  0 4 5]\nShape \"sphere\"\n",
+                  NULL);
     EXPECT_EQUAL_INT(c.triangles, 4);
     EXPECT_EQUAL_INT(c.degenerate, 3); // two corners in one place, three on a line, an area below the least float
     EXPECT(strstr(messages, "scene.pbrt:3:1: trianglemesh: 3 of 4 primitives have no area, and no ray meets them\n"));
@@ -74,7 +84,9 @@ TEST(what_no_ray_meets_is_told_once_for_each_file_and_kind)
     sprintf(p, "Include \"more.pbrt\"\n");
     struct sr_scene_counts c = try_scene(text, NULL);
     EXPECT_EQUAL_INT(c.degenerate, 16);
-    EXPECT(strstr(messages, "scene.pbrt:4:1: trianglemesh: 15 of 15 primitives have no area, and no ray meets them (of 15 shapes of this file; this is the first)\n"));
+    EXPECT(strstr(
+        messages,
+        "scene.pbrt:4:1: trianglemesh: 15 of 15 primitives have no area, and no ray meets them (of 15 shapes of this file; this is the first)\n"));
     EXPECT(strstr(messages, "more.pbrt:1:16: trianglemesh: 1 of 1 primitives have no area, and no ray meets them\n"));
     EXPECT(!strstr(messages, "beyond"));
     int lines = 0;
@@ -85,31 +97,40 @@ TEST(what_no_ray_meets_is_told_once_for_each_file_and_kind)
 
 TEST(lights_without_area_shine_with_what_they_have)
 {
-    struct sr_scene_counts c = try_scene(CAMERA "AreaLightSource \"diffuse\" Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 2 0 0] "
-                                                "\"integer indices\" [0 1 2  0 0 1  0 1 3]\n", NULL);
+    struct sr_scene_counts c =
+        try_scene(CAMERA "AreaLightSource \"diffuse\" Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 2 0 0] "
+                         "\"integer indices\" [0 1 2  0 0 1  0 1 3]\n",
+                  NULL);
     EXPECT_EQUAL_INT(c.degenerate, 2);
-    c = try_scene(CAMERA "AreaLightSource \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 0 0 1 0 0]\n", NULL);
+    c = try_scene(CAMERA "AreaLightSource \"diffuse\" Shape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 0 0 1 0 0]\n",
+                  NULL);
     EXPECT_EQUAL_INT(c.degenerate, 1);
 }
 
 TEST(a_light_that_has_lost_all_its_triangles_is_dark)
 {
-    struct sr_scene_counts c = try_scene(CAMERA "AreaLightSource \"diffuse\" Scale 1e38 1 1 Shape \"trianglemesh\" \"point3 P\" [10 0 0 11 0 0 10 1 0]\n", NULL);
+    struct sr_scene_counts c = try_scene(
+        CAMERA
+        "AreaLightSource \"diffuse\" Scale 1e38 1 1 Shape \"trianglemesh\" \"point3 P\" [10 0 0 11 0 0 10 1 0]\n",
+        NULL);
     EXPECT_EQUAL_INT(c.not_finite, 1);
     EXPECT_EQUAL_INT(c.triangles, 0);
 }
 
 TEST(triangles_too_large_for_the_ray_caster_are_counted)
 {
-    struct sr_scene_counts c = try_scene(CAMERA "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1e19 0 0 3e38 0 1e38] "
-                                                "\"integer indices\" [0 1 2  0 1 3  0 4 2]\n", NULL);
+    struct sr_scene_counts c =
+        try_scene(CAMERA "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1e19 0 0 3e38 0 1e38] "
+                         "\"integer indices\" [0 1 2  0 1 3  0 4 2]\n",
+                  NULL);
     EXPECT_EQUAL_INT(c.too_large, 2);
     EXPECT(strstr(messages, "2 of 3 primitives reach beyond 1.844e+18 m"));
 }
 
 TEST(triangles_with_denormal_corners_are_there)
 {
-    struct sr_scene_counts c = try_scene(CAMERA "Shape \"trianglemesh\" \"point3 P\" [1e-40 -1e-42 1e-44 1 1e-41 0 0 1 1e-39]\n", NULL);
+    struct sr_scene_counts c =
+        try_scene(CAMERA "Shape \"trianglemesh\" \"point3 P\" [1e-40 -1e-42 1e-44 1 1e-41 0 0 1 1e-39]\n", NULL);
     EXPECT_EQUAL_INT(c.triangles, 1);
     EXPECT_EQUAL_INT(c.degenerate + c.too_large + c.not_finite, 0);
 }
@@ -117,8 +138,10 @@ TEST(triangles_with_denormal_corners_are_there)
 TEST(a_ply_mesh_loses_the_faces_whose_numbers_are_none)
 {
     char file[2048];
-    int n = snprintf(file, sizeof file, "ply\nformat binary_little_endian 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\nproperty float u\nproperty float v\n"
-                                        "element face 4\nproperty list uchar int vertex_indices\nend_header\n");
+    int n = snprintf(
+        file, sizeof file,
+        "ply\nformat binary_little_endian 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\nproperty float u\nproperty float v\n"
+        "element face 4\nproperty list uchar int vertex_indices\nend_header\n");
     float P[6][5] = {{0, 0, 0}, {1, 0, 0, 1}, {0, 1, 0, 0, 1}, {NAN, 0, 0}, {0, INFINITY, 0}, {1, 1, 0, 1, 1}};
     int faces[4][3] = {{0, 1, 2}, {0, 1, 3}, {0, 4, 2}, {1, 5, 2}};
     memcpy(file + n, P, sizeof P);
@@ -144,21 +167,26 @@ TEST(copies_of_triangles_are_counted_in_any_order_of_their_corners)
 {
     uint64_t duplicates;
     struct sr_scene_counts c = try_scene(CAMERA "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 -0 0 0 1 1 0] "
-                                                "\"integer indices\" [0 1 2  2 0 1  1 0 2  3 1 2  1 4 2]\n", &duplicates);
+                                                "\"integer indices\" [0 1 2  2 0 1  1 0 2  3 1 2  1 4 2]\n",
+                                         &duplicates);
     EXPECT_EQUAL_INT(c.triangles, 5);
     EXPECT_EQUAL_INT(duplicates, 3);
 }
 
 TEST(surfaces_in_one_plane_give_one_of_them)
 {
-    try_scene(CAMERA "Material \"diffuse\" Shape \"disk\" Shape \"disk\" \"float radius\" 2 Material \"dielectric\" Shape \"sphere\" Shape \"sphere\"\n"
-                     "Shape \"trianglemesh\" \"point3 P\" [-1 -1 0 1 -1 0 0 1 0] Shape \"trianglemesh\" \"point3 P\" [-1 -1 0 1 -1 0 0 1 0]\n", NULL);
+    try_scene(
+        CAMERA
+        "Material \"diffuse\" Shape \"disk\" Shape \"disk\" \"float radius\" 2 Material \"dielectric\" Shape \"sphere\" Shape \"sphere\"\n"
+        "Shape \"trianglemesh\" \"point3 P\" [-1 -1 0 1 -1 0 0 1 0] Shape \"trianglemesh\" \"point3 P\" [-1 -1 0 1 -1 0 0 1 0]\n",
+        NULL);
 }
 
 TEST(nothing_at_all_is_a_scene)
 {
-    static const char ply[] = "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nelement face 0\n"
-                              "property list uchar int vertex_indices\nend_header\n";
+    static const char ply[] =
+        "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nelement face 0\n"
+        "property list uchar int vertex_indices\nend_header\n";
     write_file("empty.ply", ply, sizeof ply - 1);
     struct sr_scene_counts c = try_scene("WorldBegin\n", NULL);
     EXPECT_EQUAL_INT(c.triangles + c.instances + c.lights, 0);
@@ -168,7 +196,8 @@ TEST(nothing_at_all_is_a_scene)
     struct sr_import_result r; // a mesh of nothing is a mistake
     struct sr_error error = {0};
     static const char text[] = CAMERA "Shape \"plymesh\" \"string filename\" \"empty.ply\"\n";
-    EXPECT_EQUAL_INT(sr_import_pbrt(write_file("scene.pbrt", text, sizeof text - 1), NULL, &r, NULL, &error), SR_ERROR_INPUT);
+    EXPECT_EQUAL_INT(sr_import_pbrt(write_file("scene.pbrt", text, sizeof text - 1), NULL, &r, NULL, &error),
+                     SR_ERROR_INPUT);
     EXPECT(strstr(error.text, "scene.pbrt:3:1") && strstr(error.text, "at least one face"));
 }
 
@@ -186,7 +215,8 @@ static double build_s(const float *P, uint32_t vertices, const int32_t *indices,
         m->indices = (struct sr_slice){indices, corners};
         struct sr_shape_placement placement = {.object_to_world = sr_transform_identity()};
         EXPECT_EQUAL_INT(sr_shape_trianglemesh.prepare(m, &placement, arena, &error), SR_OK);
-        struct sr_shape_def def = {.shape = {&sr_shape_trianglemesh, m}, .media = sr_arena_alloc(arena, sizeof(struct sr_media))};
+        struct sr_shape_def def = {.shape = {&sr_shape_trianglemesh, m},
+                                   .media = sr_arena_alloc(arena, sizeof(struct sr_media))};
         sr_scene_add_shape(scene, &def);
         clock_t from = clock();
         EXPECT_EQUAL_INT(sr_scene_finish(scene, 1, SR_LIGHTS_BVH), SR_OK);
@@ -219,7 +249,8 @@ TEST(a_million_triangles_in_one_place_are_built_as_fast_as_others)
         abort();
     for (uint32_t i = 0; i < 3 * n; ++i) {
         float x = (float)(i / 3 % side) + (i % 3 == 1 ? 0.9f : 0), y = (float)(i / 3 / side) + (i % 3 == 2 ? 0.9f : 0);
-        P[3 * i] = x / (float)side, P[3 * i + 1] = y / (float)side, P[3 * i + 2] = 0.05f * sinf(0.1f * x) * cosf(0.2f * y);
+        P[3 * i] = x / (float)side, P[3 * i + 1] = y / (float)side,
+              P[3 * i + 2] = 0.05f * sinf(0.1f * x) * cosf(0.2f * y);
         apart[i] = (int32_t)i;
         same[i] = (int32_t)(i % 3);
     }
@@ -242,8 +273,9 @@ TEST(a_million_instances_are_built_in_memory_that_is_told)
         p += sprintf(p, "Translate %u 0 %d ObjectInstance \"o\"\n", i % 3, i % 2 ? 1 : -1);
     double start = sr_clock_s();
     struct sr_scene_counts c = try_scene(text, NULL);
-    printf("[   NOTE   ] %llu instances: %.2f s, geometry %.0f B and acceleration %.0f B each\n", (unsigned long long)c.instances, sr_clock_s() - start,
-           (double)c.geometry_B / (double)c.instances, (double)c.acceleration_B / (double)c.instances);
+    printf("[   NOTE   ] %llu instances: %.2f s, geometry %.0f B and acceleration %.0f B each\n",
+           (unsigned long long)c.instances, sr_clock_s() - start, (double)c.geometry_B / (double)c.instances,
+           (double)c.acceleration_B / (double)c.instances);
     EXPECT(c.geometry_B + c.acceleration_B < 2000 * c.instances + (64 << 20));
     free(text);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The command under limits of its address space (ulimit -v), from nothing to plenty: it ends with a picture, or with a message and
- * without one. */
+/* The command under limits of its address space (ulimit -v), from nothing to plenty: it ends with a picture, or with a
+ * message and without one. */
 #define _GNU_SOURCE
 #include "test.h"
 
@@ -23,7 +23,8 @@ static int run(const char *scene, const char *out, const char *words, size_t lim
         dup2(file, 2);
         alarm(100);
         setrlimit(RLIMIT_AS, &r);
-        execl(SR_TEST_COMMAND, SR_TEST_COMMAND, "render", scene, "--spp", "1", "--threads", "2", "--out", out, (char *)NULL);
+        execl(SR_TEST_COMMAND, SR_TEST_COMMAND, "render", scene, "--spp", "1", "--threads", "2", "--out", out,
+              (char *)NULL);
         _exit(126);
     }
     EXPECT(waitpid(pid, &status, 0) == pid);

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Allocations that libraries make by themselves (JSON, JPEG, streams of the C library, the ray caster's tasks): a sample of them fails, one
- * in each run. The run ends with a status and a sentence, or goes on; it does not crash, hang, or leave anything of ours behind.
+/* Allocations that libraries make by themselves (JSON, JPEG, streams of the C library, the ray caster's tasks): a
+ * sample of them fails, one in each run. The run ends with a status and a sentence, or goes on; it does not crash,
+ * hang, or leave anything of ours behind.
  *
- * malloc, calloc and realloc are this program's own, as a linker finds them first. Limits: with the GNU C library alone, and
- * not under sanitizers, which have their own. */
+ * malloc, calloc and realloc are this program's own, as a linker finds them first. Limits: with the GNU C library
+ * alone, and not under sanitizers, which have their own. */
 #include "test.h"
 
 #include "hostile/scenes.h"
@@ -34,7 +35,8 @@ static atomic_ullong fails_at = UINT64_MAX; // number of the call
 
 static bool is_allowed(void)
 {
-    bool is = atomic_fetch_add_explicit(&calls, 1, memory_order_relaxed) != atomic_load_explicit(&fails_at, memory_order_relaxed);
+    bool is = atomic_fetch_add_explicit(&calls, 1, memory_order_relaxed) !=
+              atomic_load_explicit(&fails_at, memory_order_relaxed);
     if (!is)
         errno = ENOMEM;
     return is;
@@ -79,8 +81,10 @@ static void try_all(const char *path, uint64_t most, struct tally *t)
         atomic_store(&fails_at, UINT64_MAX);
         ++t->tried;
         ++t->ends[status == SR_OK ? 0 : status == SR_ERROR_RESOURCE ? 1 : 2];
-        if ((status == SR_OK) != (error.status == SR_OK) || (status != SR_OK && !error.text[0]) || sr_alloc_live() != live) {
-            snprintf(t->what, sizeof t->what, "status %d, \"%s\", %llu allocations left", (int)status, error.text, (unsigned long long)(sr_alloc_live() - live));
+        if ((status == SR_OK) != (error.status == SR_OK) || (status != SR_OK && !error.text[0]) ||
+            sr_alloc_live() != live) {
+            snprintf(t->what, sizeof t->what, "status %d, \"%s\", %llu allocations left", (int)status, error.text,
+                     (unsigned long long)(sr_alloc_live() - live));
             _exit(1);
         }
     }
@@ -107,11 +111,14 @@ TEST(allocations_of_libraries_may_fail)
         int status;
         EXPECT(waitpid(pid, &status, 0) == pid);
         if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-            test_fail(__FILE__, __LINE__, "%s, allocation %llu of %llu: %s %d %s", names[i], (unsigned long long)t->number, (unsigned long long)t->count,
-                      WIFEXITED(status) ? "code" : "signal", WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status), t->what);
-        printf("[   NOTE   ] %s: %llu allocations of libraries, %llu made to fail: %llu did not matter, %llu ended for want of memory, %llu otherwise\n", names[i],
-               (unsigned long long)t->count, (unsigned long long)t->tried, (unsigned long long)t->ends[0], (unsigned long long)t->ends[1],
-               (unsigned long long)t->ends[2]);
+            test_fail(__FILE__, __LINE__, "%s, allocation %llu of %llu: %s %d %s", names[i],
+                      (unsigned long long)t->number, (unsigned long long)t->count,
+                      WIFEXITED(status) ? "code" : "signal", WIFEXITED(status) ? WEXITSTATUS(status) : WTERMSIG(status),
+                      t->what);
+        printf(
+            "[   NOTE   ] %s: %llu allocations of libraries, %llu made to fail: %llu did not matter, %llu ended for want of memory, %llu otherwise\n",
+            names[i], (unsigned long long)t->count, (unsigned long long)t->tried, (unsigned long long)t->ends[0],
+            (unsigned long long)t->ends[1], (unsigned long long)t->ends[2]);
         munmap(t, sizeof *t);
     }
 }

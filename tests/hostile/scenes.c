@@ -39,7 +39,12 @@ static float density(int i, int j, int k)
 
 static void put_volume(void)
 {
-    struct nanovdb_spec spec = {.name = "density", .type = 1, .lo = {0, 0, 0}, .hi = {9, 9, 9}, .value = density, .matrix = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    struct nanovdb_spec spec = {.name = "density",
+                                .type = 1,
+                                .lo = {0, 0, 0},
+                                .hi = {9, 9, 9},
+                                .value = density,
+                                .matrix = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
     struct nanovdb_file file = {0};
     nanovdb_write(&file, &spec);
     put("volume.nvdb", file.data, file.size);
@@ -53,8 +58,9 @@ static void put_packed(const char *name, const char *text)
         test_fail(__FILE__, __LINE__, "%s cannot be written", name);
 }
 
-static const char measured_names[SEED_COUNT][20] = {"merl.binary", "rgl.bsdf", "rgb.bsdf", "polarised.pbsdf", "klems.xml", "tree.xml",
-                                                    "cornell.dat", "astm.txt", "abg.txt",  "table.txt",       "cloud.txt"};
+static const char measured_names[SEED_COUNT][20] = {"merl.binary", "rgl.bsdf",  "rgb.bsdf",    "polarised.pbsdf",
+                                                    "klems.xml",   "tree.xml",  "cornell.dat", "astm.txt",
+                                                    "abg.txt",     "table.txt", "cloud.txt"};
 
 static const char more[] =
     "Include \"part.pbrt\"\nShape \"plymesh\" \"string filename\" \"mesh.ply.gz\"\n"
@@ -72,12 +78,17 @@ static void put_scene(const char *name, const char *estimator)
 {
     static char text[SEED_SIZE];
     const char *integrator = strstr(seed_scene_head, "\"volpath\"");
-    int n = estimator ? snprintf(text, sizeof text, "%.*s\"%s\" # %s", (int)(integrator - seed_scene_head), seed_scene_head, estimator, integrator)
+    int n = estimator ? snprintf(text, sizeof text, "%.*s\"%s\" # %s", (int)(integrator - seed_scene_head),
+                                 seed_scene_head, estimator, integrator)
                       : snprintf(text, sizeof text, "%s", seed_scene_head);
-    const char *fog = strstr(seed_scene_body, "MediumInterface"), *behind = strchr(fog, '\n'); // through which only volpath goes
-    n += snprintf(text + n, sizeof text - (size_t)n, "%.*s%s%s", (int)(fog - seed_scene_body), seed_scene_body, estimator ? behind : fog, estimator ? "" : more);
+    const char *fog = strstr(seed_scene_body, "MediumInterface"),
+               *behind = strchr(fog, '\n'); // through which only volpath goes
+    n += snprintf(text + n, sizeof text - (size_t)n, "%.*s%s%s", (int)(fog - seed_scene_body), seed_scene_body,
+                  estimator ? behind : fog, estimator ? "" : more);
     for (int i = 0; i < SEED_COUNT && !estimator; ++i)
-        n += snprintf(text + n, sizeof text - (size_t)n, "Material \"measured\" \"string filename\" \"%s\"\nShape \"sphere\" \"float radius\" .2\n", measured_names[i]);
+        n += snprintf(text + n, sizeof text - (size_t)n,
+                      "Material \"measured\" \"string filename\" \"%s\"\nShape \"sphere\" \"float radius\" .2\n",
+                      measured_names[i]);
     if (n >= (int)sizeof text)
         test_fail(__FILE__, __LINE__, "the scene is too long");
     put_text(name, text);
@@ -85,7 +96,8 @@ static void put_scene(const char *name, const char *estimator)
 
 static void put_everything(void)
 {
-    static const char *const images[] = {"image.exr", "image.png", "image.jpg", "image.pfm", "image.hdr", "image.qoi", "image.tga"};
+    static const char *const images[] = {"image.exr", "image.png", "image.jpg", "image.pfm",
+                                         "image.hdr", "image.qoi", "image.tga"};
     static struct seed s;
     char ply[1024];
     for (int i = 0; i < 7; ++i) {
@@ -108,16 +120,23 @@ static void put_everything(void)
     put_text("part.pbrt", "AttributeBegin\nScale 2 2 2\nShape \"disk\"\nAttributeEnd\n");
     put_text("curve.spd", seed_spectrum);
     put_text("lens.dat", seed_lens);
-    put_text("lamp.ies", "IESNA:LM-63-1995\nTILT=NONE\n1 500 1 3 2 1 2 0 0 0\n1 1 20\n0 45 90\n0 90\n100 80 10 90 70 5\n");
+    put_text("lamp.ies",
+             "IESNA:LM-63-1995\nTILT=NONE\n1 500 1 3 2 1 2 0 0 0\n1 1 20\n0 45 90\n0 90\n100 80 10 90 70 5\n");
     put_text("model.mtl", seed_materials);
     image_seed(1, &s);
     put("none.png", s.data, s.size);
     put("x.png", s.data, s.size);
-    put_text("model.obj", "mtllib model.mtl\no a\nv 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\nusemtl m\nf 1/1/1 2/2/1 3/3/1 4//1\nf -4 -3 -2 -1\n");
-    put_text("model.stl", "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n");
+    put_text(
+        "model.obj",
+        "mtllib model.mtl\no a\nv 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 0 1\nusemtl m\nf 1/1/1 2/2/1 3/3/1 4//1\nf -4 -3 -2 -1\n");
+    put_text(
+        "model.stl",
+        "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n");
     put_volume();
-    put_text("lens.pbrt", "Camera \"realistic\" \"string lensfile\" \"lens.dat\" \"float aperturediameter\" 3 \"string aperture\" \"image.png\"\n"
-                          "WorldBegin\nLightSource \"infinite\"\nShape \"sphere\" \"float radius\" .1\n");
+    put_text(
+        "lens.pbrt",
+        "Camera \"realistic\" \"string lensfile\" \"lens.dat\" \"float aperturediameter\" 3 \"string aperture\" \"image.png\"\n"
+        "WorldBegin\nLightSource \"infinite\"\nShape \"sphere\" \"float radius\" .1\n");
     put_scene("scene.pbrt", NULL);
 }
 
@@ -145,8 +164,19 @@ sr_status hostile_render(const char *name, const char *out, struct sr_error *err
     sr_status status = sr_import_pbrt(name, &options, &r, NULL, error);
     if (status != SR_OK)
         return status;
-    struct sr_render_job job = {.scene = r.scene, .sensor = r.sensor, .filter = r.filter, .integrator = r.integrator, .film = r.film, .sampler = r.sampler,
-                                .seed = r.seed, .spp = 4, .lambda = {360, 830}, .jitter_pixel = true, .jitter_lambda = true, .threads = 1, .with_aov = true};
+    struct sr_render_job job = {.scene = r.scene,
+                                .sensor = r.sensor,
+                                .filter = r.filter,
+                                .integrator = r.integrator,
+                                .film = r.film,
+                                .sampler = r.sampler,
+                                .seed = r.seed,
+                                .spp = 4,
+                                .lambda = {360, 830},
+                                .jitter_pixel = true,
+                                .jitter_lambda = true,
+                                .threads = 1,
+                                .with_aov = true};
     struct sr_film *film = NULL;
     struct sr_image *image = NULL;
     struct sr_render_report report;

@@ -5,7 +5,8 @@
 
 #include "import/import.h"
 
-/* The path of one of them: scene.pbrt, lens.pbrt, model.gltf, model.glb, model.obj, model.stl, model.ply. Static buffer. */
+/* The path of one of them: scene.pbrt, lens.pbrt, model.gltf, model.glb, model.obj, model.stl, model.ply. Static
+ * buffer. */
 const char *hostile_scene(const char *name);
 /* scene.pbrt with another estimator. */
 const char *hostile_estimator(const char *name);

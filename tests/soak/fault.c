@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* A disk that fails at will: LD_PRELOADed, it counts the calls that write files whose names contain FAULT_FILE, and from the
- * FAULT_AT-th on makes FAULT_COUNT of them (default 1) fail with the number FAULT_ERRNO; or it kills the process there where
- * that is 0. FAULT_THEN kills it so many calls after the first failure. FAULT_LOG gets a line for each call that was hit. */
+/* A disk that fails at will: LD_PRELOADed, it counts the calls that write files whose names contain FAULT_FILE, and
+ * from the FAULT_AT-th on makes FAULT_COUNT of them (default 1) fail with the number FAULT_ERRNO; or it kills the
+ * process there where that is 0. FAULT_THEN kills it so many calls after the first failure. FAULT_LOG gets a line for
+ * each call that was hit. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -43,7 +44,8 @@ static void say(const char *what)
 /* Whether this call is to fail; errno is set then. */
 static int fails(const char *what)
 {
-    long at = number("FAULT_AT", 0), count = number("FAULT_COUNT", 1), then = number("FAULT_THEN", 0), reason = number("FAULT_ERRNO", 0);
+    long at = number("FAULT_AT", 0), count = number("FAULT_COUNT", 1), then = number("FAULT_THEN", 0),
+         reason = number("FAULT_ERRNO", 0);
     int now = __atomic_add_fetch(&calls, 1, __ATOMIC_RELAXED);
     if (at == 0 || now < at)
         return 0;
@@ -62,7 +64,7 @@ static int fails(const char *what)
 #define REAL(type, name, ...)                                                                                          \
     static type (*real)(__VA_ARGS__);                                                                                  \
     if (!real)                                                                                                         \
-        real = (type(*)(__VA_ARGS__))dlsym(RTLD_NEXT, #name)
+    real = (type(*)(__VA_ARGS__))dlsym(RTLD_NEXT, #name)
 
 static int watch(int fd, const char *path)
 {

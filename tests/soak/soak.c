@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Rays whose answers are known, by the thousand million: sr_soak [rays [threads [watertight | self-hits | floors [first body [last body]]]]].
+/* Rays whose answers are known, by the thousand million: sr_soak [rays [threads [watertight | self-hits | floors [first
+ * body [last body]]]]].
  *
  * A leak is told with its body, aim and ray number, from which cast_from_inside makes the same ray again.
  * Of n trials without a fault the share of faults is below 3.0 / n with 95 % confidence (1 - 0.05^(1/n)). */
@@ -60,14 +61,16 @@ static uint64_t watertight(uint64_t rays, int threads, int first, int last)
         enum body body;
         double offset; // [radii]
         bool is_instance;
-    } bodies[] = {{BODY_BALL, 0, 0}, {BODY_BALL, 1e3, 0}, {BODY_BALL, 1e5, 0}, {BODY_BALL, 1e7, 0}, {BODY_SPIKES, 0, 0}, {BODY_SPIKES, 1e3, 0},
-                  {BODY_SPIKES, 1e5, 0}, {BODY_CUBE, 0, 0}, {BODY_CUBE, 1e3, 0}, {BODY_CUBE, 1e5, 0}, {BODY_BALL, 0, 1}, {BODY_SPIKES, 1e3, 1}};
+    } bodies[] = {{BODY_BALL, 0, 0},   {BODY_BALL, 1e3, 0},   {BODY_BALL, 1e5, 0},   {BODY_BALL, 1e7, 0},
+                  {BODY_SPIKES, 0, 0}, {BODY_SPIKES, 1e3, 0}, {BODY_SPIKES, 1e5, 0}, {BODY_CUBE, 0, 0},
+                  {BODY_CUBE, 1e3, 0}, {BODY_CUBE, 1e5, 0},   {BODY_BALL, 0, 1},     {BODY_SPIKES, 1e3, 1}};
     enum { N = sizeof bodies / sizeof *bodies };
     uint64_t faults = 0, all = 0;
     for (int i = first; i < N && i <= last; ++i) {
         const struct body_at *b = &bodies[i];
         struct closed_mesh m = make_closed_mesh(b->body, 160, 1, b->offset, b->is_instance);
-        printf("%-6s %6" PRIu32 " triangles, at %5g radii%s: leaks", body_names[b->body], m.triangles, b->offset, b->is_instance ? ", instance" : "");
+        printf("%-6s %6" PRIu32 " triangles, at %5g radii%s: leaks", body_names[b->body], m.triangles, b->offset,
+               b->is_instance ? ", instance" : "");
         uint64_t done = 0, shadows = 0;
         for (int aim = 0; aim < AIMS; ++aim) {
             struct run r = {.mesh = &m, .number = i, .aim = (enum aim)aim};
@@ -80,7 +83,8 @@ static uint64_t watertight(uint64_t rays, int threads, int first, int last)
         all += done;
         free_closed_mesh(&m);
     }
-    printf("watertight: %" PRIu64 " faults in %" PRIu64 " rays: a share below %.2g with 95 %% confidence\n", faults, all, faults ? 1.0 : 3.0 / (double)all);
+    printf("watertight: %" PRIu64 " faults in %" PRIu64 " rays: a share below %.2g with 95 %% confidence\n", faults,
+           all, faults ? 1.0 : 3.0 / (double)all);
     return faults;
 }
 
@@ -93,18 +97,22 @@ static uint64_t self_hits(uint64_t rays, int threads)
             for (int k = -6; k <= 6; ++k) {
                 struct convex_surface s = make_convex((enum convex)kind, pow(10, k), is_instance);
                 struct run r = {.convex = &s};
-                cast(&r, rays / (CONVEXES * 26) / 4, threads); // about half of the points meet the shape, each casts 8 rays
+                cast(&r, rays / (CONVEXES * 26) / 4,
+                     threads); // about half of the points meet the shape, each casts 8 rays
                 done += r.done, hits += r.leaks, inward += r.inward, missed += r.missed;
                 if (r.leaks + r.missed)
-                    printf("  scale 1e%d: %" PRIu64 " hits of %" PRIu64 ", %" PRIu64 " misses\n", k, r.leaks, r.done, r.missed);
+                    printf("  scale 1e%d: %" PRIu64 " hits of %" PRIu64 ", %" PRIu64 " misses\n", k, r.leaks, r.done,
+                           r.missed);
                 free_convex(&s);
             }
-            printf("%s%s, 1e-6 to 1e6 m: %" PRIu64 " self-hits of %" PRIu64 " rays; inward %" PRIu64 " missed of %" PRIu64 "\n", convex_names[kind],
-                   is_instance ? ", instance" : "", hits, done, missed, inward);
+            printf("%s%s, 1e-6 to 1e6 m: %" PRIu64 " self-hits of %" PRIu64 " rays; inward %" PRIu64
+                   " missed of %" PRIu64 "\n",
+                   convex_names[kind], is_instance ? ", instance" : "", hits, done, missed, inward);
             fflush(stdout);
             all += done + inward, faults += hits + missed;
         }
-    printf("self-hits: %" PRIu64 " faults in %" PRIu64 " rays: a share below %.2g with 95 %% confidence\n", faults, all, faults ? 1.0 : 3.0 / (double)all);
+    printf("self-hits: %" PRIu64 " faults in %" PRIu64 " rays: a share below %.2g with 95 %% confidence\n", faults, all,
+           faults ? 1.0 : 3.0 / (double)all);
     return faults;
 }
 
@@ -118,11 +126,13 @@ static uint64_t floors(uint64_t rays, int threads)
         struct run r = {.floor = &f};
         cast(&r, points, threads);
         if (r.leaks)
-            printf("  floor %" PRIu64 "%s: %" PRIu64 " hits of %" PRIu64 "\n", i / 2, i & 1 ? ", by pairs" : "", r.leaks, r.done);
+            printf("  floor %" PRIu64 "%s: %" PRIu64 " hits of %" PRIu64 "\n", i / 2, i & 1 ? ", by pairs" : "",
+                   r.leaks, r.done);
         done += r.done, faults += r.leaks;
         free_floor(&f);
     }
-    printf("floors: %" PRIu64 " faults in %" PRIu64 " rays: a share below %.2g with 95 %% confidence\n", faults, done, faults ? 1.0 : 3.0 / (double)done);
+    printf("floors: %" PRIu64 " faults in %" PRIu64 " rays: a share below %.2g with 95 %% confidence\n", faults, done,
+           faults ? 1.0 : 3.0 / (double)done);
     return faults;
 }
 

@@ -10,14 +10,18 @@ struct reading {
 };
 
 /* An object, defined where nothing is placed yet. */
-static const char object[] = "ObjectBegin \"ball\"\nTranslate 0 0 0.1\nShape \"sphere\" \"float radius\" 0.2\nObjectEnd\n";
-static const char by_chance[] = "\"path\" \"integer maxdepth\" 60", by_quadrature[] = "\"quadrature\" \"integer maxdepth\" 0 \"float tolerance\" 1e-6";
+static const char object[] =
+    "ObjectBegin \"ball\"\nTranslate 0 0 0.1\nShape \"sphere\" \"float radius\" 0.2\nObjectEnd\n";
+static const char by_chance[] = "\"path\" \"integer maxdepth\" 60",
+                  by_quadrature[] = "\"quadrature\" \"integer maxdepth\" 0 \"float tolerance\" 1e-6";
 
 /* E at `at` of the scene's text behind `before`, which places all of it. */
-static struct reading measure_by(const char *integrator, const char *before, const char *world, const double at[3], sr_vec3 n, uint32_t samples)
+static struct reading measure_by(const char *integrator, const char *before, const char *world, const double at[3],
+                                 sr_vec3 n, uint32_t samples)
 {
     char text[2048];
-    snprintf(text, sizeof text, "Film \"rgb\" \"integer xresolution\" 1 \"integer yresolution\" 1\nIntegrator %s\nWorldBegin\n%s%s\n%s\n",
+    snprintf(text, sizeof text,
+             "Film \"rgb\" \"integer xresolution\" 1 \"integer yresolution\" 1\nIntegrator %s\nWorldBegin\n%s%s\n%s\n",
              integrator, object, before, world);
     struct sr_import_result scene;
     struct sr_import_options options = {.threads = 1};
@@ -41,16 +45,20 @@ static struct reading measure(const char *before, const char *world, const doubl
 }
 
 /* A closed sphere that shines and reflects half: E = pi L / (1 - 1/2). */
-static const char furnace[] = "AttributeBegin\nReverseOrientation\nMaterial \"diffuse\" \"float reflectance\" 0.5\nAreaLightSource \"diffuse\" \"float scale\" 1\n"
-                              "Shape \"sphere\"\nAttributeEnd\n";
-/* A square of 1 m x 1 m and 1 cd/m^2, 1 m above the receiver: E = 0.752274688454 lx (Howell; Hamilton & Morgan, 1952). */
-static const char square[] = "AreaLightSource \"diffuse\" \"float scale\" 1\nMaterial \"diffuse\" \"float reflectance\" 0\n"
-                             "Shape \"bilinearmesh\" \"point3 P\" [-0.5 -0.5 1  -0.5 0.5 1  0.5 -0.5 1  0.5 0.5 1]\n";
+static const char furnace[] =
+    "AttributeBegin\nReverseOrientation\nMaterial \"diffuse\" \"float reflectance\" 0.5\nAreaLightSource \"diffuse\" \"float scale\" 1\n"
+    "Shape \"sphere\"\nAttributeEnd\n";
+/* A square of 1 m x 1 m and 1 cd/m^2, 1 m above the receiver: E = 0.752274688454 lx (Howell; Hamilton & Morgan, 1952).
+ */
+static const char square[] =
+    "AreaLightSource \"diffuse\" \"float scale\" 1\nMaterial \"diffuse\" \"float reflectance\" 0\n"
+    "Shape \"bilinearmesh\" \"point3 P\" [-0.5 -0.5 1  -0.5 0.5 1  0.5 -0.5 1  0.5 0.5 1]\n";
 /* A mesh and an instance beside a lamp of two triangles. */
-static const char meshes[] = "AttributeBegin\nAreaLightSource \"diffuse\" \"float scale\" 3\n"
-                             "Shape \"trianglemesh\" \"integer indices\" [0 2 1 0 3 2] \"point3 P\" [-0.5 -0.5 1  0.5 -0.5 1  0.5 0.5 1  -0.5 0.5 1]\nAttributeEnd\n"
-                             "AttributeBegin\nTranslate 0.6 0 0.1\nRotate 30 0 1 0\nObjectInstance \"ball\"\nAttributeEnd\n"
-                             "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-2 -2 -0.2  2 -2 -0.2  2 2 -0.2  -2 2 -0.2]\n";
+static const char meshes[] =
+    "AttributeBegin\nAreaLightSource \"diffuse\" \"float scale\" 3\n"
+    "Shape \"trianglemesh\" \"integer indices\" [0 2 1 0 3 2] \"point3 P\" [-0.5 -0.5 1  0.5 -0.5 1  0.5 0.5 1  -0.5 0.5 1]\nAttributeEnd\n"
+    "AttributeBegin\nTranslate 0.6 0 0.1\nRotate 30 0 1 0\nObjectInstance \"ball\"\nAttributeEnd\n"
+    "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-2 -2 -0.2  2 -2 -0.2  2 2 -0.2  -2 2 -0.2]\n";
 static const char *const worlds[] = {furnace, square, meshes};
 
 TEST(far_from_the_origin_all_is_as_it_is_there)
@@ -87,7 +95,8 @@ TEST(what_transforms_place_far_away_keeps_its_place)
     char before[200];
     snprintf(before, sizeof before, "Translate %.17g %.17g %.17g", o[0], o[1], o[2]);
     for (int i = 0; i < 3; ++i) {
-        struct reading here = measure("", worlds[i], (double[3]){0, 0, 0}, (sr_vec3){0, 0, 1}, samples), there = measure(before, worlds[i], o, (sr_vec3){0, 0, 1}, samples);
+        struct reading here = measure("", worlds[i], (double[3]){0, 0, 0}, (sr_vec3){0, 0, 1}, samples),
+                       there = measure(before, worlds[i], o, (sr_vec3){0, 0, 1}, samples);
         EXPECT_RELATIVE(there.E, here.E, 1e-4);
         fprintf(stderr, "  scene %d, no round place: a change of E of %.1e\n", i, there.E / here.E - 1);
         EXPECT_EQUAL_INT(there.warnings, 1);
@@ -103,13 +112,14 @@ TEST(pictures_of_far_places_are_the_same_bytes)
     struct sr_import_result scenes[3];
     for (int i = 0; i < 3; ++i) {
         char text[2048];
-        snprintf(text, sizeof text,
-                 "Translate 0 0 4\nRotate -60 1 0 0\nTranslate %.9g %.9g %.9g\nCamera \"perspective\" \"float shutterclose\" 1\nSampler \"sobol\" \"integer pixelsamples\" 4\n"
-                 "Film \"gbuffer\" \"integer xresolution\" 24 \"integer yresolution\" 24 \"string coordinatesystem\" \"world\"\nWorldBegin\n%sTranslate %.9g %.9g %.9g\n"
-                 "Texture \"t\" \"spectrum\" \"checkerboard\" \"integer dimension\" 3 \"rgb tex1\" [0.2 0.5 0.8]\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\n"
-                 "LightSource \"point\" \"point3 from\" [1 -1 2]\nLightSource \"infinite\"\n%s"
-                 "AttributeBegin\nActiveTransform EndTime\nTranslate 0.5 0 0\nActiveTransform All\nShape \"sphere\" \"float radius\" 0.3\nAttributeEnd\n",
-                 -o[i], -o[i], -o[i], object, o[i], o[i], o[i], meshes);
+        snprintf(
+            text, sizeof text,
+            "Translate 0 0 4\nRotate -60 1 0 0\nTranslate %.9g %.9g %.9g\nCamera \"perspective\" \"float shutterclose\" 1\nSampler \"sobol\" \"integer pixelsamples\" 4\n"
+            "Film \"gbuffer\" \"integer xresolution\" 24 \"integer yresolution\" 24 \"string coordinatesystem\" \"world\"\nWorldBegin\n%sTranslate %.9g %.9g %.9g\n"
+            "Texture \"t\" \"spectrum\" \"checkerboard\" \"integer dimension\" 3 \"rgb tex1\" [0.2 0.5 0.8]\nMaterial \"diffuse\" \"texture reflectance\" \"t\"\n"
+            "LightSource \"point\" \"point3 from\" [1 -1 2]\nLightSource \"infinite\"\n%s"
+            "AttributeBegin\nActiveTransform EndTime\nTranslate 0.5 0 0\nActiveTransform All\nShape \"sphere\" \"float radius\" 0.3\nAttributeEnd\n",
+            -o[i], -o[i], -o[i], object, o[i], o[i], o[i], meshes);
         struct sr_error error = {0};
         if (!import_scene(scene_file("far.pbrt", text), NULL, &scenes[i], &error))
             test_fail(__FILE__, __LINE__, "%s", error.text);
@@ -133,8 +143,10 @@ TEST(turned_scenes_measure_the_same)
         sr_vec3 axis = {1, -2, (float)k - 1.5f};
         struct sr_transform turn = sr_transform_rotate(angle, axis);
         char before[100];
-        snprintf(before, sizeof before, "Rotate %.9g %.9g %.9g %.9g", (double)angle, (double)axis.x, (double)axis.y, (double)axis.z);
-        struct reading r = measure_by(by_quadrature, before, square, (double[3]){0, 0, 0}, sr_transform_normal(&turn, (sr_vec3){0, 0, 1}), 1);
+        snprintf(before, sizeof before, "Rotate %.9g %.9g %.9g %.9g", (double)angle, (double)axis.x, (double)axis.y,
+                 (double)axis.z);
+        struct reading r = measure_by(by_quadrature, before, square, (double[3]){0, 0, 0},
+                                      sr_transform_normal(&turn, (sr_vec3){0, 0, 1}), 1);
         EXPECT_RELATIVE(r.E, 0.752274688454, 1e-5);
     }
 }
@@ -154,7 +166,8 @@ TEST(scenes_of_any_size_measure_the_same)
     uint32_t samples = is_slow_build() ? 256 : 4096;
     for (int i = 0; i < 4; ++i) {
         struct reading here = measure("", all[i], (double[3]){0, 0, 0}, (sr_vec3){0, 0, 1}, samples);
-        // by powers of two nearly to the last bit: the places of meters are known to a micrometre at best, lamps told apart to a nanometre
+        // by powers of two nearly to the last bit: the places of meters are known to a micrometre at best, lamps told
+        // apart to a nanometre
         double largest = 0;
         for (int k = -20; k <= 20; k += 10) {
             char before[100];
@@ -164,23 +177,26 @@ TEST(scenes_of_any_size_measure_the_same)
             largest = fmax(largest, fabs(E / here.E - 1));
         }
         fprintf(stderr, "  scene %d: changes of E with its size up to %.1e\n", i, largest);
-        EXPECT_RELATIVE(measure("Scale 1000 1000 1000", all[i], (double[3]){0, 0, 0}, (sr_vec3){0, 0, 1}, samples).E, here.E, 1e-3);
+        EXPECT_RELATIVE(measure("Scale 1000 1000 1000", all[i], (double[3]){0, 0, 0}, (sr_vec3){0, 0, 1}, samples).E,
+                        here.E, 1e-3);
     }
 }
 
 static struct sr_film *picture_of(const char *integrator, double brightness, struct sr_import_result *scene)
 {
     char text[4096];
-    int n = snprintf(text, sizeof text,
-                     "LookAt 0.5 -3 1  0 0 0.3  0 0 1\nCamera \"perspective\" \"float fov\" 50\nSampler \"sobol\" \"integer pixelsamples\" 16\n"
-                     "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 24\nIntegrator \"%s\" \"integer maxdepth\" 20\nWorldBegin\n",
-                     integrator);
-    snprintf(text + n, sizeof text - (size_t)n,
-             "AttributeBegin\nAreaLightSource \"diffuse\" \"float scale\" %.9g\nTranslate 0.5 0 1\nShape \"sphere\" \"float radius\" 0.1\n"
-             "Shape \"disk\" \"float radius\" 0.3\nAttributeEnd\nLightSource \"infinite\" \"float scale\" %.9g\nLightSource \"point\" \"point3 from\" [1 -1 1] \"float scale\" %.9g\n"
-             "Material \"diffuse\" \"rgb reflectance\" [0.7 0.5 0.2]\nShape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-2 -2 -0.2  2 -2 -0.2  2 2 -0.2  -2 2 -0.2]\n"
-             "Material \"conductor\" \"float roughness\" 0.2\nShape \"sphere\" \"float radius\" 0.3\nMaterial \"dielectric\"\nTranslate 0.6 -0.6 0.2\nShape \"sphere\" \"float radius\" 0.2\n",
-             3 * brightness, 0.1 * brightness, brightness);
+    int n = snprintf(
+        text, sizeof text,
+        "LookAt 0.5 -3 1  0 0 0.3  0 0 1\nCamera \"perspective\" \"float fov\" 50\nSampler \"sobol\" \"integer pixelsamples\" 16\n"
+        "Film \"rgb\" \"integer xresolution\" 24 \"integer yresolution\" 24\nIntegrator \"%s\" \"integer maxdepth\" 20\nWorldBegin\n",
+        integrator);
+    snprintf(
+        text + n, sizeof text - (size_t)n,
+        "AttributeBegin\nAreaLightSource \"diffuse\" \"float scale\" %.9g\nTranslate 0.5 0 1\nShape \"sphere\" \"float radius\" 0.1\n"
+        "Shape \"disk\" \"float radius\" 0.3\nAttributeEnd\nLightSource \"infinite\" \"float scale\" %.9g\nLightSource \"point\" \"point3 from\" [1 -1 1] \"float scale\" %.9g\n"
+        "Material \"diffuse\" \"rgb reflectance\" [0.7 0.5 0.2]\nShape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point3 P\" [-2 -2 -0.2  2 -2 -0.2  2 2 -0.2  -2 2 -0.2]\n"
+        "Material \"conductor\" \"float roughness\" 0.2\nShape \"sphere\" \"float radius\" 0.3\nMaterial \"dielectric\"\nTranslate 0.6 -0.6 0.2\nShape \"sphere\" \"float radius\" 0.2\n",
+        3 * brightness, 0.1 * brightness, brightness);
     struct sr_error error = {0};
     if (!import_scene(scene_file("lights.pbrt", text), NULL, scene, &error))
         test_fail(__FILE__, __LINE__, "%s", error.text);
@@ -191,8 +207,8 @@ static struct sr_film *picture_of(const char *integrator, double brightness, str
     return film;
 }
 
-/* The lights times a power of two: the picture times the same, to the last bit; sums of splats, which are whole numbers of 2^-56,
- * to their rounding. */
+/* The lights times a power of two: the picture times the same, to the last bit; sums of splats, which are whole numbers
+ * of 2^-56, to their rounding. */
 TEST(pictures_are_linear_in_the_lights)
 {
     static const char *const integrators[] = {"path", "volpath", "bdpt", "lightpath"};

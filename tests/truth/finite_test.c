@@ -8,7 +8,7 @@ static struct sr_bsdf_model poisoned_model;
 static struct sr_material_model poisoned_material;
 static struct sr_integrator_model watched;
 static const struct sr_integrator_model *path_model;
-static bool is_poisoned;       // the sample that is being made: tests here use one thread
+static bool is_poisoned;        // the sample that is being made: tests here use one thread
 static uint64_t poisoned_count; // samples
 
 /* One value in sixteen, by the direction. */
@@ -30,7 +30,8 @@ static sr_spectrum poisoned_f(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_
     return poison(sr_bsdf_diffuse.f(self, wo, wi, mode), wo, wi);
 }
 
-static bool poisoned_sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode, struct sr_bsdf_sample *s)
+static bool poisoned_sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum sr_transport mode,
+                            struct sr_bsdf_sample *s)
 {
     bool is_there = sr_bsdf_diffuse.sample(self, wo, u_lobe, u, mode, s);
     s->f = poison(s->f, wo, s->wi);
@@ -46,8 +47,9 @@ static void poisoned_bsdf(const void *self, const struct sr_material_context *c,
     d->reflectance = (sr_spectrum){} + 0.5f;
 }
 
-static sr_spectrum watched_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start, const struct sr_sampler *sampler,
-                             struct sr_wavelengths *w, struct sr_hit *first, struct sr_worker *worker)
+static sr_spectrum watched_L(const void *self, const struct sr_scene *scene, const struct sr_path_start *start,
+                             const struct sr_sampler *sampler, struct sr_wavelengths *w, struct sr_hit *first,
+                             struct sr_worker *worker)
 {
     is_poisoned = false;
     sr_spectrum L = path_model->L(self, scene, start, sampler, w, first, worker);
@@ -57,9 +59,10 @@ static sr_spectrum watched_L(const void *self, const struct sr_scene *scene, con
 
 TEST(samples_that_are_not_finite_are_counted_to_the_last)
 {
-    static const char text[] = "LookAt 0 0 1  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 30\nSampler \"sobol\" \"integer pixelsamples\" 512\n"
-                               "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\nIntegrator \"path\" \"integer maxdepth\" 1\nWorldBegin\n"
-                               "LightSource \"infinite\"\nMaterial \"conductor\" \"float roughness\" 0.5\nShape \"disk\" \"float radius\" 9\n";
+    static const char text[] =
+        "LookAt 0 0 1  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" 30\nSampler \"sobol\" \"integer pixelsamples\" 512\n"
+        "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\nIntegrator \"path\" \"integer maxdepth\" 1\nWorldBegin\n"
+        "LightSource \"infinite\"\nMaterial \"conductor\" \"float roughness\" 0.5\nShape \"disk\" \"float radius\" 9\n";
     struct sr_import_result scene;
     struct sr_error error = {0};
     if (!import_scene(scene_file("poison.pbrt", text), NULL, &scene, &error))
@@ -85,7 +88,8 @@ TEST(samples_that_are_not_finite_are_counted_to_the_last)
     uint64_t in_pixels = 0;
     for (size_t i = 0; i < 256; ++i) {
         const struct sr_film_pixel *p = &film->pixels[i];
-        EXPECT(isfinite(p->sum[0]) && isfinite(p->sum[1]) && isfinite(p->sum[2]) && isfinite(p->square[0]) && isfinite(p->largest));
+        EXPECT(isfinite(p->sum[0]) && isfinite(p->sum[1]) && isfinite(p->sum[2]) && isfinite(p->square[0]) &&
+               isfinite(p->largest));
         EXPECT(p->sum[0] > 0);
         in_pixels += p->dropped;
     }
@@ -95,7 +99,8 @@ TEST(samples_that_are_not_finite_are_counted_to_the_last)
     // the first one is told, and is the same when it is asked for again
     float rgb[3];
     struct sr_worker worker = {0};
-    EXPECT(!sr_render_sample(&job, report.dropped_x, report.dropped_y, report.dropped_replicate, report.dropped_sample, rgb, NULL, &worker));
+    EXPECT(!sr_render_sample(&job, report.dropped_x, report.dropped_y, report.dropped_replicate, report.dropped_sample,
+                             rgb, NULL, &worker));
     sr_film_destroy(film);
     sr_import_result_free(&scene);
 }

@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-/* Scenes of one surface, made by calls, so that coordinates are what they are said to be, and rays that know their answer. */
+/* Scenes of one surface, made by calls, so that coordinates are what they are said to be, and rays that know their
+ * answer. */
 #include "truth/rays.h"
 
 #include <string.h>
 
 const char *const body_names[BODIES] = {"ball", "spikes", "cube"};
-const char *const aim_names[AIMS] = {"anywhere", "at vertices", "at edges", "along axes", "along axes at vertices", "within planes"};
-const char *const convex_names[CONVEXES] = {"sphere", "disk", "cylinder", "patch", "triangles", "ribbon", "ball of triangles"};
+const char *const aim_names[AIMS] = {"anywhere",     "at vertices", "at edges", "along axes", "along axes at vertices",
+                                     "within planes"};
+const char *const convex_names[CONVEXES] = {"sphere",    "disk",   "cylinder",         "patch",
+                                            "triangles", "ribbon", "ball of triangles"};
 
 static const struct sr_material *grey(struct sr_scene *scene)
 {
@@ -30,7 +33,8 @@ static void place(struct sr_scene *scene, struct sr_shape shape, bool is_instanc
         test_fail(__FILE__, __LINE__, "%s", sr_scene_error(scene)->text);
 }
 
-static struct sr_shape mesh_shape(struct sr_scene *scene, const sr_vec3 *P, uint32_t vertices, const int32_t *indices, uint32_t triangles)
+static struct sr_shape mesh_shape(struct sr_scene *scene, const sr_vec3 *P, uint32_t vertices, const int32_t *indices,
+                                  uint32_t triangles)
 {
     struct sr_shape_mesh *m = sr_arena_alloc(sr_scene_arena(scene), sizeof *m);
     *m = (struct sr_shape_mesh){.indices = {indices, 3 * triangles}, .P = {P, vertices}};
@@ -51,9 +55,14 @@ static void globe(struct closed_mesh *m, struct sr_arena *arena, int rings, bool
     struct sr_rng rng = sr_rng_seed(5, 0);
     int north = (int)m->vertices - 2, south = north + 1;
     for (int v = 0; v < (int)m->vertices; ++v) {
-        double theta = v == north ? 0 : v == south ? M_PI : M_PI * (1 + v / round) / rings, phi = M_PI * (v % round) / rings;
-        double r = m->radius * (has_spikes ? 0.7 + 0.3 * (double)sr_rng_float(&rng) : 1), s = v >= north ? 0 : sin(theta);
-        P[v] = (sr_vec3){(float)(m->centre + r * s * cos(phi)), (float)(m->centre + r * s * sin(phi)), (float)(m->centre + r * cos(theta))};
+        double theta = v == north   ? 0
+                       : v == south ? M_PI
+                                    : M_PI * (1 + v / round) / rings,
+               phi = M_PI * (v % round) / rings;
+        double r = m->radius * (has_spikes ? 0.7 + 0.3 * (double)sr_rng_float(&rng) : 1),
+               s = v >= north ? 0 : sin(theta);
+        P[v] = (sr_vec3){(float)(m->centre + r * s * cos(phi)), (float)(m->centre + r * s * sin(phi)),
+                         (float)(m->centre + r * cos(theta))};
     }
     int n = 0;
     for (int i = 0; i < rings; ++i)
@@ -70,12 +79,14 @@ static void globe(struct closed_mesh *m, struct sr_arena *arena, int rings, bool
 
 static void cube(struct closed_mesh *m, struct sr_arena *arena)
 {
-    static const int32_t corners[36] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+    static const int32_t corners[36] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                                        2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
     m->vertices = 8;
     m->triangles = 12;
     sr_vec3 *P = sr_arena_alloc(arena, 8 * sizeof *P);
     for (int i = 0; i < 8; ++i)
-        P[i] = (sr_vec3){(float)(m->centre + (i & 1 ? m->radius : -m->radius)), (float)(m->centre + (i & 2 ? m->radius : -m->radius)),
+        P[i] = (sr_vec3){(float)(m->centre + (i & 1 ? m->radius : -m->radius)),
+                         (float)(m->centre + (i & 2 ? m->radius : -m->radius)),
                          (float)(m->centre + (i & 4 ? m->radius : -m->radius))};
     m->P = P;
     m->indices = corners;
@@ -90,7 +101,9 @@ struct closed_mesh make_closed_mesh(enum body body, int rings, double radius, do
     else
         globe(&m, arena, rings, body == BODY_SPIKES);
     float c = (float)(offset * radius);
-    struct sr_transform turn = sr_transform_rotate(33, (sr_vec3){1, 2, 3}), away = sr_transform_translate((sr_vec3){c, c, c}), to_world = sr_transform_multiply(&away, &turn);
+    struct sr_transform turn = sr_transform_rotate(33, (sr_vec3){1, 2, 3}),
+                        away = sr_transform_translate((sr_vec3){c, c, c}),
+                        to_world = sr_transform_multiply(&away, &turn);
     place(m.scene, mesh_shape(m.scene, m.P, m.vertices, m.indices, m.triangles), is_instance, &to_world);
     if (is_instance) {
         sr_vec3 *P = sr_arena_alloc(arena, m.vertices * sizeof *P);
@@ -124,7 +137,8 @@ struct leaks cast_from_inside(const struct closed_mesh *m, enum aim aim, uint64_
     float c = (float)m->centre, R = (float)m->radius;
     for (uint64_t i = begin; i < end; ++i) {
         struct sr_rng rng = sr_rng_seed(i, (uint64_t)aim + 1);
-        sr_vec3 in = sr_scale(R * 0.4f * sr_rng_float(&rng), sr_warp_uniform_sphere((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)}));
+        sr_vec3 in = sr_scale(R * 0.4f * sr_rng_float(&rng),
+                              sr_warp_uniform_sphere((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)}));
         sr_vec3 o = sr_add((sr_vec3){c, c, c}, in), d;
         uint32_t t = pick(&rng, m->triangles), k = pick(&rng, 3);
         sr_vec3 a = m->P[m->indices[3 * t + k]], b = m->P[m->indices[3 * t + (k + 1) % 3]];
@@ -183,7 +197,8 @@ static void *keep(struct sr_arena *arena, const void *self, size_t size)
 
 static struct sr_shape convex_shape(struct sr_scene *scene, enum convex kind)
 {
-    static const sr_vec3 square[4] = {{-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}, {1, 1, 0}}, line[4] = {{-1.5f, -1, 0}, {-0.5f, -0.4f, 0}, {0.5f, 0.3f, 0}, {1.5f, 0.9f, 0}},
+    static const sr_vec3 square[4] = {{-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}, {1, 1, 0}},
+                         line[4] = {{-1.5f, -1, 0}, {-0.5f, -0.4f, 0}, {0.5f, 0.3f, 0}, {1.5f, 0.9f, 0}},
                          up[2] = {{0, 0, 1}, {0, 0, 1}};
     static const int32_t halves[6] = {0, 1, 3, 0, 3, 2}, whole[4] = {0, 1, 2, 3};
     struct sr_arena *arena = sr_scene_arena(scene);
@@ -211,7 +226,14 @@ static struct sr_shape convex_shape(struct sr_scene *scene, enum convex kind)
         return (struct sr_shape){&sr_shape_trianglemesh, keep(arena, &mesh, sizeof mesh)};
     }
     case CONVEX_RIBBON: {
-        struct sr_shape_curves curves = {.one = {.width = 1, .width0 = NAN, .width1 = NAN, .degree = 3, .type = 1, .split_depth = 3, .P = {line, 4}, .N = {up, 2}}};
+        struct sr_shape_curves curves = {.one = {.width = 1,
+                                                 .width0 = NAN,
+                                                 .width1 = NAN,
+                                                 .degree = 3,
+                                                 .type = 1,
+                                                 .split_depth = 3,
+                                                 .P = {line, 4},
+                                                 .N = {up, 2}}};
         return (struct sr_shape){&sr_shape_curve, keep(arena, &curves, sizeof curves)};
     }
     default: {
@@ -226,8 +248,9 @@ struct convex_surface make_convex(enum convex kind, double scale, bool is_instan
     struct convex_surface s = {.scene = sr_scene_create(), .kind = kind, .scale = scale};
     struct sr_arena *arena = sr_scene_arena(s.scene);
     float f = (float)scale;
-    struct sr_transform size = sr_transform_scale((sr_vec3){f, f, f}), turn = sr_transform_rotate(33, (sr_vec3){1, 2, 3}), turned = sr_transform_multiply(&turn, &size),
-                        one = sr_transform_identity();
+    struct sr_transform size = sr_transform_scale((sr_vec3){f, f, f}),
+                        turn = sr_transform_rotate(33, (sr_vec3){1, 2, 3}),
+                        turned = sr_transform_multiply(&turn, &size), one = sr_transform_identity();
     if (is_instance) { // small and large at once: an object of unit size
         struct sr_transform away = sr_transform_translate((sr_vec3){3 * f, -2 * f, f});
         turned = sr_transform_multiply(&away, &turned);
@@ -256,7 +279,8 @@ struct self_hits leave_convex(const struct convex_surface *s, uint64_t begin, ui
     for (uint64_t i = begin; i < end; ++i) {
         struct sr_rng rng = sr_rng_seed(i, 77);
         sr_vec3 from = sr_warp_uniform_sphere((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)});
-        sr_vec3 at = sr_mad(s->centre, f * 0.6f, sr_warp_uniform_sphere((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)}));
+        sr_vec3 at =
+            sr_mad(s->centre, f * 0.6f, sr_warp_uniform_sphere((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)}));
         struct sr_ray ray = {.o = sr_mad(at, 5 * f, from), .d = sr_neg(from), .t_max = INFINITY};
         struct sr_hit hit, again;
         if (!(i & 1 ? sr_raycast(s->scene, &ray, &hit) : sr_raycast_bare(s->scene, &ray, &hit)))
@@ -293,15 +317,20 @@ enum { FLOOR_FACE = 1, LID_FACE, OTHER_FACE, OTHERS = 2100 };
 
 static void set_corners(struct tilted_floor *f, uint64_t number)
 {
-    static const sr_vec3 known[4] = {{-2.13123f, 0, 70.0611f}, {-71.502f, -8.75425e-6f, -2.15457f}, {0.713687f, 0, -71.5254f}, {70.0845f, 8.75425e-6f, 0.690351f}};
+    static const sr_vec3 known[4] = {{-2.13123f, 0, 70.0611f},
+                                     {-71.502f, -8.75425e-6f, -2.15457f},
+                                     {0.713687f, 0, -71.5254f},
+                                     {70.0845f, 8.75425e-6f, 0.690351f}};
     struct sr_rng rng = sr_rng_seed(number, 3);
     f->span = number == 0 ? 71 : pow(10, 4 * (double)sr_rng_float(&rng));
     f->is_needle = number % 4 == 3;
     bool is_level = number % 4 != 1;
-    double width = f->is_needle ? pow(10, -3 * (double)sr_rng_float(&rng)) : 1, tilt = pow(10, -7 + 5 * (double)sr_rng_float(&rng)),
-           shift = sr_rng_float(&rng) < 0.5f ? 0 : 0.5 * f->span, along = 2 * M_PI * (double)sr_rng_float(&rng), turn = 2 * M_PI * (double)sr_rng_float(&rng);
+    double width = f->is_needle ? pow(10, -3 * (double)sr_rng_float(&rng)) : 1,
+           tilt = pow(10, -7 + 5 * (double)sr_rng_float(&rng)), shift = sr_rng_float(&rng) < 0.5f ? 0 : 0.5 * f->span,
+           along = 2 * M_PI * (double)sr_rng_float(&rng), turn = 2 * M_PI * (double)sr_rng_float(&rng);
     for (int k = 0; k < 4; ++k) {
-        double phi = M_PI / 2 * k + 0.3 * (double)sr_rng_float(&rng), x = f->span * cos(phi), z = f->span * width * sin(phi);
+        double phi = M_PI / 2 * k + 0.3 * (double)sr_rng_float(&rng), x = f->span * cos(phi),
+               z = f->span * width * sin(phi);
         double X = x * cos(along) - z * sin(along) + shift, Z = x * sin(along) + z * cos(along), Y = tilt * X;
         if (!is_level) {
             double Y0 = Y;
@@ -330,7 +359,8 @@ struct tilted_floor make_floor(uint64_t number, bool is_paired, bool has_lid)
     struct sr_arena *arena = sr_scene_arena(f.scene);
     uint32_t quads = 1 + has_lid + (is_paired ? OTHERS : 0);
     sr_vec3 *P = sr_arena_alloc(arena, 4 * quads * sizeof *P), *p = P, up = up_of(&f), middle = middle_of(&f);
-    int32_t *t = sr_arena_alloc(arena, 6 * quads * sizeof *t), *faces = sr_arena_alloc(arena, 2 * quads * sizeof *faces);
+    int32_t *t = sr_arena_alloc(arena, 6 * quads * sizeof *t),
+            *faces = sr_arena_alloc(arena, 2 * quads * sizeof *faces);
     float d = (float)f.span;
     for (uint32_t q = 0; q < quads; ++q, p += 4) {
         bool is_floor = q == 0, is_lid = q == 1 && has_lid;
@@ -338,7 +368,8 @@ struct tilted_floor make_floor(uint64_t number, bool is_paired, bool has_lid)
         for (uint32_t c = 0; c < 4; ++c)
             p[c] = is_floor ? f.corners[c]
                    : is_lid ? sr_mad(sr_add(middle, sr_scale(0.9f, sr_sub(f.corners[c], middle))), 1e-5f * d, up)
-                            : (sr_vec3){d * (0.02f * (float)i + (c == 1 || c == 2 ? 0.01f : 0)), -20 * d, d * (0.02f * (float)k + (c > 1 ? 0.01f : 0))};
+                            : (sr_vec3){d * (0.02f * (float)i + (c == 1 || c == 2 ? 0.01f : 0)), -20 * d,
+                                        d * (0.02f * (float)k + (c > 1 ? 0.01f : 0))};
         int32_t o = 4 * (int32_t)q, turn = (int32_t)((number + q) % 3); // any corner may be the first
         int32_t first[3] = {o, o + 1, o + 2}, second[3] = {o, o + 2, o + 3};
         for (int32_t c = 0; c < 3; ++c) {
@@ -372,7 +403,8 @@ struct self_hits leave_floor(const struct tilted_floor *f, uint64_t begin, uint6
         // within the quad around the middle, so that what is looked for lies within the lid, too
         uint32_t k = pick(&rng, 4);
         sr_vec2 b = sr_warp_triangle((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)});
-        sr_vec3 e = sr_sub(f->corners[k], middle), g = sr_sub(f->corners[(k + 1) % 4], middle), at = sr_mad(sr_mad(middle, 0.85f * b.x, e), 0.85f * b.y, g);
+        sr_vec3 e = sr_sub(f->corners[k], middle), g = sr_sub(f->corners[(k + 1) % 4], middle),
+                at = sr_mad(sr_mad(middle, 0.85f * b.x, e), 0.85f * b.y, g);
         bool is_below = i & 2;
         sr_vec3 from = sr_warp_uniform_hemisphere((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)});
         struct sr_frame frame = sr_frame_from_z(is_below ? sr_neg(up) : up);
@@ -387,8 +419,10 @@ struct self_hits leave_floor(const struct tilted_floor *f, uint64_t begin, uint6
         sr_vec3 n = sr_face_forward(hit.point.n, from);
         frame = sr_frame_from_z(n);
         for (int c = 0; c < 8; ++c) {
-            float z = c & 1 ? sr_rng_float(&rng) : powf(10, -6 * sr_rng_float(&rng)), r = sqrtf(1 - z * z), phi = 2 * SR_PI * sr_rng_float(&rng);
-            struct sr_ray leaving = sr_leave(&hit.point, sr_to_world(&frame, (sr_vec3){r * cosf(phi), r * sinf(phi), z}));
+            float z = c & 1 ? sr_rng_float(&rng) : powf(10, -6 * sr_rng_float(&rng)), r = sqrtf(1 - z * z),
+                  phi = 2 * SR_PI * sr_rng_float(&rng);
+            struct sr_ray leaving =
+                sr_leave(&hit.point, sr_to_world(&frame, (sr_vec3){r * cosf(phi), r * sinf(phi), z}));
             ++out.rays;
             out.hits += sr_raycast(f->scene, &leaving, &again) && again.point.face == face;
         }

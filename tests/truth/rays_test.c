@@ -8,15 +8,18 @@ TEST(closed_meshes_leak_no_ray_wherever_they_stand)
         enum body body;
         double offset; // [radii]
         bool is_instance;
-    } bodies[] = {{BODY_BALL, 0, 0}, {BODY_BALL, 1e5, 0}, {BODY_BALL, 1e7, 0}, {BODY_SPIKES, 0, 0}, {BODY_SPIKES, 1e3, 0}, {BODY_CUBE, 1e3, 0}, {BODY_SPIKES, 1e3, 1}};
+    } bodies[] = {{BODY_BALL, 0, 0},     {BODY_BALL, 1e5, 0}, {BODY_BALL, 1e7, 0},  {BODY_SPIKES, 0, 0},
+                  {BODY_SPIKES, 1e3, 0}, {BODY_CUBE, 1e3, 0}, {BODY_SPIKES, 1e3, 1}};
     uint64_t rays = is_slow_build() ? 1000 : 20000;
     for (size_t i = 0; i < sizeof bodies / sizeof *bodies; ++i) {
         struct closed_mesh m = make_closed_mesh(bodies[i].body, 24, 1, bodies[i].offset, bodies[i].is_instance);
         for (int aim = 0; aim < AIMS; ++aim) {
             struct leaks l = cast_from_inside(&m, (enum aim)aim, 0, rays);
             if (l.leaks + l.shadows)
-                test_fail(__FILE__, __LINE__, "%s at %g radii, %s: %llu of %llu rays meet nothing, %llu see the outside", body_names[bodies[i].body],
-                          bodies[i].offset, aim_names[aim], (unsigned long long)l.leaks, (unsigned long long)l.rays, (unsigned long long)l.shadows);
+                test_fail(__FILE__, __LINE__,
+                          "%s at %g radii, %s: %llu of %llu rays meet nothing, %llu see the outside",
+                          body_names[bodies[i].body], bodies[i].offset, aim_names[aim], (unsigned long long)l.leaks,
+                          (unsigned long long)l.rays, (unsigned long long)l.shadows);
         }
         free_closed_mesh(&m);
     }
@@ -43,9 +46,10 @@ TEST(nothing_meets_the_surface_that_it_leaves)
                 free_convex(&s);
                 EXPECT(h.rays > points);
                 if (h.hits + h.missed)
-                    test_fail(__FILE__, __LINE__, "%s of 1e%d m%s: %llu of %llu rays meet it again, %llu of %llu go through it", convex_names[kind], k,
-                              is_instance ? ", instance" : "", (unsigned long long)h.hits, (unsigned long long)h.rays, (unsigned long long)h.missed,
-                              (unsigned long long)h.inward);
+                    test_fail(__FILE__, __LINE__,
+                              "%s of 1e%d m%s: %llu of %llu rays meet it again, %llu of %llu go through it",
+                              convex_names[kind], k, is_instance ? ", instance" : "", (unsigned long long)h.hits,
+                              (unsigned long long)h.rays, (unsigned long long)h.missed, (unsigned long long)h.inward);
             }
 }
 
@@ -58,7 +62,8 @@ TEST(a_small_instance_of_a_sphere_is_left_for_good)
     EXPECT_EQUAL_INT(h.hits, 0);
 }
 
-/* Large triangles, slightly tilted, alone or as the ray caster gets them by pairs (docs/decisions/0024-leaving-triangles.md). */
+/* Large triangles, slightly tilted, alone or as the ray caster gets them by pairs
+ * (docs/decisions/0024-leaving-triangles.md). */
 TEST(nothing_meets_the_floor_that_it_leaves)
 {
     uint64_t floors = is_slow_build() ? 4 : 60, points = is_slow_build() ? 300 : 2000;
@@ -68,8 +73,9 @@ TEST(nothing_meets_the_floor_that_it_leaves)
             struct self_hits h = leave_floor(&f, 0, points);
             EXPECT(h.rays > points);
             if (h.hits)
-                test_fail(__FILE__, __LINE__, "floor %llu of %g m%s: %llu of %llu rays meet it again", (unsigned long long)i, f.span, is_paired ? ", of pairs" : "",
-                          (unsigned long long)h.hits, (unsigned long long)h.rays);
+                test_fail(__FILE__, __LINE__, "floor %llu of %g m%s: %llu of %llu rays meet it again",
+                          (unsigned long long)i, f.span, is_paired ? ", of pairs" : "", (unsigned long long)h.hits,
+                          (unsigned long long)h.rays);
             free_floor(&f);
         }
 }

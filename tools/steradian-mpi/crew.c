@@ -11,8 +11,9 @@
 #include <time.h>
 
 enum { MOST_OUT_B = 256 << 20 }; // that may wait to be sent before those who make them wait
-static const double TICK_S = 0.25, GIVE_UP_S = 0.7; // [s] after which the owner waits no more for helpers, once cancelled:
-                                                 // mpirun kills all ranks 1 s after it has passed SIGTERM on
+static const double TICK_S = 0.25,
+                    GIVE_UP_S = 0.7; // [s] after which the owner waits no more for helpers, once cancelled:
+                                     // mpirun kills all ranks 1 s after it has passed SIGTERM on
 
 _Thread_local int crew_taking_from;
 
@@ -46,7 +47,8 @@ static char *identity_of_all(void)
 {
     uint64_t hash = hash_file("/proc/self/exe", 0xcbf29ce484222325);
     Dl_info program, library;
-    if (dladdr((void *)(uintptr_t)identity_of_all, &program) && dladdr((void *)(uintptr_t)sr_fail, &library) && library.dli_fbase != program.dli_fbase)
+    if (dladdr((void *)(uintptr_t)identity_of_all, &program) && dladdr((void *)(uintptr_t)sr_fail, &library) &&
+        library.dli_fbase != program.dli_fbase)
         hash = hash_file(library.dli_fname, hash);
     size_t size = strlen(render_crew.identity) + 64;
     char *text = sr_alloc(size);
@@ -220,8 +222,15 @@ static sr_status end(void *self, bool is_cancelled, struct sr_error *error)
 
 void crew_begin(struct crew *c)
 {
-    c->hooks = (struct sr_render_crew){.self = c, .is_helper = c->place.rank > 0, .meet = meet, .share = share, .begin = begin, .next = next,
-                                       .hand = hand, .note = note, .end = end};
+    c->hooks = (struct sr_render_crew){.self = c,
+                                       .is_helper = c->place.rank > 0,
+                                       .meet = meet,
+                                       .share = share,
+                                       .begin = begin,
+                                       .next = next,
+                                       .hand = hand,
+                                       .note = note,
+                                       .end = end};
     for (int i = 0; i < c->place.rank; ++i)
         c->number += c->place.all[i].threads > 0;
     c->out_end = &c->out;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* steradian-mpi: `steradian render` by many processes under mpirun or srun, to the same bytes.
  *
- * This thread talks MPI (pump.c), a second one runs the command itself. Rank 0 is a user's steradian render, with helpers. */
+ * This thread talks MPI (pump.c), a second one runs the command itself. Rank 0 is a user's steradian render, with
+ * helpers. */
 #define _GNU_SOURCE
 #include "ranks.h"
 
@@ -140,10 +141,12 @@ static void introduce(const struct place *p, bool is_quiet)
         most = p->all[i].threads > most ? p->all[i].threads : most;
     if (is_quiet || p->ranks == 1)
         return;
-    fprintf(stderr, "%d rank%s on %d host%s: %d render%s with %s%d thread%s", p->ranks, p->ranks == 1 ? "" : "s", p->hosts, p->hosts == 1 ? "" : "s",
-            p->renderers, p->renderers == 1 ? "s" : "", p->renderers == 1 ? "" : "up to ", most, most == 1 ? "" : "s");
+    fprintf(stderr, "%d rank%s on %d host%s: %d render%s with %s%d thread%s", p->ranks, p->ranks == 1 ? "" : "s",
+            p->hosts, p->hosts == 1 ? "" : "s", p->renderers, p->renderers == 1 ? "s" : "",
+            p->renderers == 1 ? "" : "up to ", most, most == 1 ? "" : "s");
     if (waiting)
-        fprintf(stderr, "; %d wait%s, as one scene serves all of a node (--each-rank: each loads it)", waiting, waiting == 1 ? "s" : "");
+        fprintf(stderr, "; %d wait%s, as one scene serves all of a node (--each-rank: each loads it)", waiting,
+                waiting == 1 ? "s" : "");
     fputc('\n', stderr);
 }
 
@@ -165,7 +168,8 @@ static int render_with_others(int argc, char **argv, const struct options *o)
         hush_begin();
     else
         introduce(&crew.place, o->quiet);
-    render_crew = (struct render_crew){.hooks = &crew.hooks, .threads = own->threads, .processes = crew.place.renderers};
+    render_crew =
+        (struct render_crew){.hooks = &crew.hooks, .threads = own->threads, .processes = crew.place.renderers};
     task = (struct task){.argc = argc, .argv = argv, .crew = &crew};
     if (!unit_log_open(&crew, o->unit_log)) {
         task.ending.code = SR_ERROR_RESOURCE;
@@ -199,7 +203,9 @@ int main(int argc, char **argv)
         code = argc > 1 ? 0 : SR_ERROR_USAGE;
     } else if (strcmp(name, "render") != 0 || !is_whole) {
         if (rank == 0)
-            fprintf(stderr, is_whole ? "steradian-mpi: the only subcommand is render; \"%s\" goes with steradian\n" : "steradian-mpi: --unit-log: a file was expected%.0s\n",
+            fprintf(stderr,
+                    is_whole ? "steradian-mpi: the only subcommand is render; \"%s\" goes with steradian\n"
+                             : "steradian-mpi: --unit-log: a file was expected%.0s\n",
                     name);
         code = SR_ERROR_USAGE;
     } else if (provided < MPI_THREAD_FUNNELED) {

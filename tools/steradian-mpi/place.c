@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* steradian-mpi: which ranks render, and with how many threads.
  *
- * Launchers bind a rank to some of its node's processors. Where one rank renders for its whole node, it may run on what all ranks
- * of the node were given; where each renders for itself, those who were given the same processors share them evenly. */
+ * Launchers bind a rank to some of its node's processors. Where one rank renders for its whole node, it may run on what
+ * all ranks of the node were given; where each renders for itself, those who were given the same processors share them
+ * evenly. */
 #define _GNU_SOURCE
 #include "ranks.h"
 

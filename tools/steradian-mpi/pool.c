@@ -3,8 +3,8 @@
  *
  *     n = remaining tiles * threads of the process / (SPLIT * threads of all),    at most LONGEST_S of work, at least 1
  *
- * Guided self-scheduling: C. Polychronopoulos & D. Kuck 1987, with SPLIT > 1 as tiles differ in cost. The limit in time keeps
- * what a slow process may hold small in long renders; before any cost is known, deals are a quarter of that.
+ * Guided self-scheduling: C. Polychronopoulos & D. Kuck 1987, with SPLIT > 1 as tiles differ in cost. The limit in time
+ * keeps what a slow process may hold small in long renders; before any cost is known, deals are a quarter of that.
  * Limits: a tile is never parted, so that the end waits for the dearest of the last tiles. */
 #include "pool.h"
 

@@ -19,7 +19,8 @@ struct pool {
     uint64_t done;        // how many these are
 };
 
-/* The next tiles for a process with so many threads; false: there are none left. has_share: a process's own, where there are shares. */
+/* The next tiles for a process with so many threads; false: there are none left. has_share: a process's own, where
+ * there are shares. */
 bool pool_deal(struct pool *p, uint32_t threads, uint32_t process, bool *has_share, struct deal *deal);
 uint32_t deal_tiles(const struct deal *d);
 

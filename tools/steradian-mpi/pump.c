@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* steradian-mpi: the main thread, which alone talks MPI. Probes and short naps, so that it leaves the processor to those who render.
+/* steradian-mpi: the main thread, which alone talks MPI. Probes and short naps, so that it leaves the processor to
+ * those who render.
  *
  * To the owner:     READY identity, WANT, DATA piece …, PASSED, ENDED code and text
  * From the owner:   GO, DEAL tiles or none, STOP, SHARE piece …, END
  *
- * Messages of one sender arrive in order, so that a helper's PASSED comes after all its DATA. Longer bytes go in pieces; the
- * first tells how many there are in all. */
+ * Messages of one sender arrive in order, so that a helper's PASSED comes after all its DATA. Longer bytes go in
+ * pieces; the first tells how many there are in all. */
 #define _POSIX_C_SOURCE 200809L
 #include "ranks.h"
 
@@ -119,7 +120,10 @@ static bool receive(struct message *m)
     if (!is_there)
         return false;
     MPI_Get_count(&status, MPI_BYTE, &size);
-    *m = (struct message){.from = status.MPI_SOURCE, .tag = status.MPI_TAG, .size = (size_t)size, .bytes = need(sr_alloc((size_t)size + 1))};
+    *m = (struct message){.from = status.MPI_SOURCE,
+                          .tag = status.MPI_TAG,
+                          .size = (size_t)size,
+                          .bytes = need(sr_alloc((size_t)size + 1))};
     MPI_Recv(m->bytes, size, MPI_BYTE, m->from, m->tag, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
     return true;
 }
@@ -153,7 +157,7 @@ struct owner {
         char *identity;
         bool wants, has_share, has_passed;
         struct inbox in;
-    } *helpers; // by rank
+    } * helpers;     // by rank
     bool is_stopped; // this pass: all have been told
     uint64_t pass_number;
 };
@@ -166,7 +170,8 @@ static void say_failed(struct crew *c, int rank, int status, const char *text)
     if (strncmp(text, prefix, sizeof prefix - 1) == 0)
         text += sizeof prefix - 1;
     c->failed_status = status;
-    snprintf(c->failure, sizeof c->failure, "rank %d on %s: %.*s", rank, c->place.all[rank].host, (int)strcspn(text, "\n"), text);
+    snprintf(c->failure, sizeof c->failure, "rank %d on %s: %.*s", rank, c->place.all[rank].host,
+             (int)strcspn(text, "\n"), text);
     pthread_cond_broadcast(&c->changed);
 }
 
@@ -185,7 +190,8 @@ static void compare_identities(struct crew *c, int rank, const char *theirs)
         size_t n = strcspn(ours, "\n"), m = strcspn(theirs, "\n");
         if (n != m || memcmp(ours, theirs, n) != 0) {
             char text[RANKS_TEXT / 2];
-            snprintf(text, sizeof text, "would make another picture: it has \"%.*s\", rank 0 has \"%.*s\"", (int)m, theirs, (int)n, ours);
+            snprintf(text, sizeof text, "would make another picture: it has \"%.*s\", rank 0 has \"%.*s\"", (int)m,
+                     theirs, (int)n, ours);
             say_failed(c, rank, SR_ERROR_INPUT, text);
             return;
         }
@@ -343,7 +349,8 @@ static int pump_owner(struct crew *c, const struct ending *own)
         tidy(&o.out);
         if (is_over && all_ended && o.out.count == 0)
             return own->code;
-        if (is_over && sr_clock_s() > over_s) { // one of them does not answer: the work is done, or has failed, without it
+        if (is_over &&
+            sr_clock_s() > over_s) { // one of them does not answer: the work is done, or has failed, without it
             MPI_Abort(MPI_COMM_WORLD, own->code);
             return own->code;
         }
@@ -419,7 +426,8 @@ static void serve(struct crew *c, struct outbox *o)
         send(o, 0, PASSED, NULL, 0);
         c->pass = NULL;
         pthread_cond_broadcast(&c->changed);
-    } else if (!c->is_ended && !c->is_exhausted && !c->is_asked && c->deal_count < RANKS_DEALS && crew_waiting_units(c) <= (uint64_t)c->pass->threads) {
+    } else if (!c->is_ended && !c->is_exhausted && !c->is_asked && c->deal_count < RANKS_DEALS &&
+               crew_waiting_units(c) <= (uint64_t)c->pass->threads) {
         send(o, 0, WANT, NULL, 0);
         c->is_asked = true;
     }

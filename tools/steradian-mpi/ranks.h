@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* steradian-mpi: what its parts share. The main thread alone talks MPI (pump.c); `steradian render` runs in a second one, and
- * meets the others through the hooks of a crew (crew.c). */
+/* steradian-mpi: what its parts share. The main thread alone talks MPI (pump.c); `steradian render` runs in a second
+ * one, and meets the others through the hooks of a crew (crew.c). */
 #ifndef SR_TOOLS_MPI_RANKS_H
 #define SR_TOOLS_MPI_RANKS_H
 
@@ -42,36 +42,36 @@ enum meeting { MEETING_NOT, MEETING_WANTED, MEETING_HELD, MEETING_FAILED };
 struct crew {
     struct sr_render_crew hooks;
     struct place place;
-    uint32_t number;         // among the processes that render
-    char *identity;          // what all of them must agree upon, "key value" lines; from the meeting on
-    pthread_mutex_t lock;    // guards all that follows
+    uint32_t number;      // among the processes that render
+    char *identity;       // what all of them must agree upon, "key value" lines; from the meeting on
+    pthread_mutex_t lock; // guards all that follows
     pthread_cond_t changed;
 
     enum meeting meeting;
-    int failed_status;       // 0, or what another one has ended with
+    int failed_status; // 0, or what another one has ended with
     char failure[RANKS_TEXT];
-    bool is_over;            // a helper: nothing more is wanted
+    bool is_over; // a helper: nothing more is wanted
 
     const struct sr_crew_pass *pass; // NULL: between passes
     uint64_t pass_number;
-    struct pool pool;        // the owner's
-    bool has_share;          // the owner's
+    struct pool pool;               // the owner's
+    bool has_share;                 // the owner's
     struct deal deals[RANKS_DEALS]; // this process's own, the first one is under way
     int deal_count;
-    uint64_t position;       // in the first deal
+    uint64_t position;           // in the first deal
     bool is_exhausted, is_asked; // a helper: no more will come; more has been asked for
-    bool is_ended;           // the pass, on this side
-    bool is_taking;          // the owner's pump: the pass must stay
-    int passed;              // the owner: helpers who are through with it
+    bool is_ended;               // the pass, on this side
+    bool is_taking;              // the owner's pump: the pass must stay
+    int passed;                  // the owner: helpers who are through with it
 
     struct parcel *out, **out_end; // a helper's bytes for the owner
     size_t out_B;
-    void *shared;            // the owner: to be sent to all; a helper: to be filled
+    void *shared; // the owner: to be sent to all; a helper: to be filled
     size_t shared_B;
-    struct parcel *in;       // a helper: what has been shared and nobody has asked for yet
+    struct parcel *in; // a helper: what has been shared and nobody has asked for yet
 
-    FILE *unit_log;          // NULL: none
-    double start_s, took_s;  // the owner: when the render met, time of its pump in taking
+    FILE *unit_log;                // NULL: none
+    double start_s, took_s;        // the owner: when the render met, time of its pump in taking
     double pass_start_s, passes_s; // the owner: from a pass's beginning to its end, all of them
     uint64_t messages, message_B;
 };

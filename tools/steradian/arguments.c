@@ -112,8 +112,9 @@ bool command_parse_uint(const struct command *command, const char *option, const
 }
 
 /* A number and what may stand behind it, with its factor. */
-static bool parse_scaled(const struct command *command, const char *option, const char *text, const char *const *suffixes,
-                         const double *factors, double most, const char *expected, double *value)
+static bool parse_scaled(const struct command *command, const char *option, const char *text,
+                         const char *const *suffixes, const double *factors, double most, const char *expected,
+                         double *value)
 {
     char *end;
     double number = strtod(text, &end);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* steradian brdf convert: any specimen as a file of measured data; then reads it back and tells what the format has cost. */
+/* steradian brdf convert: any specimen as a file of measured data; then reads it back and tells what the format has
+ * cost. */
 #include "brdf.h"
 #include "measured/measured.h"
 
@@ -113,8 +114,8 @@ static sr_status write_file(const struct arguments *a, enum format format, struc
     return sr_measured_write_table(a->output, &grid, f, source, error);
 }
 
-/* rms of (file - specimen) |cos theta_i| over that of the specimen, over directions within 80 deg of the normal; MERL keeps
- * colours only, so of it the mean over wavelengths counts */
+/* rms of (file - specimen) |cos theta_i| over that of the specimen, over directions within 80 deg of the normal; MERL
+ * keeps colours only, so of it the mean over wavelengths counts */
 static double difference(const struct sr_measured *file, struct source *source, bool is_rgb)
 {
     sr_spectrum lambda = SR_BLACK;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* steradian brdf fit: the parameters with which a model comes nearest to data, their uncertainties, and what is left. */
+/* steradian brdf fit: the parameters with which a model comes nearest to data, their uncertainties, and what is left.
+ */
 #include "brdf.h"
 #include "plot/plot.h"
 
@@ -15,7 +16,8 @@ static const char help[] =
     "\n"
     "      --model WORDS        the model to fit; needed\n"
     "      --fix NAME[,NAME …]  parameters that stay as given\n"
-    "      --lambda NM[,NM …]   wavelengths [nm], up to " BRDF_MOST_LAMBDAS " (450,550,650): spectra get a value at each, the rest is "
+    "      --lambda NM[,NM …]   wavelengths [nm], up to " BRDF_MOST_LAMBDAS
+    " (450,550,650): spectra get a value at each, the rest is "
     "shared\n"
     "      --metric WORD        cube-root (weighs bright and dark as eyes do), log (relative) or linear (cube-root)\n"
     "      --points N           pairs of directions (4000)\n"

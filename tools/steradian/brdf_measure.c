@@ -111,7 +111,8 @@ static int parse(int argc, char **argv, struct arguments *a)
 static void put_rows(FILE *out, const struct sr_gonio_beam *b, const struct sr_gonio_scatter *s)
 {
     for (size_t c = 0; c < s->cells; ++c) {
-        double theta = 90 * ((double)(c / b->phi_count) + 0.5) / b->theta_count, phi = (b->is_isotropic ? 180 : 360) * ((double)(c % b->phi_count) + 0.5) / b->phi_count;
+        double theta = 90 * ((double)(c / b->phi_count) + 0.5) / b->theta_count,
+               phi = (b->is_isotropic ? 180 : 360) * ((double)(c % b->phi_count) + 0.5) / b->phi_count;
         fprintf(out, "%.6g %.6g %.6g %.6g", (double)b->theta_i * 180 / M_PI, (double)b->phi_i * 180 / M_PI, theta, phi);
         for (int i = 0; i < SR_LAMBDA_COUNT; ++i)
             fprintf(out, " %.6g", s->f[c * SR_LAMBDA_COUNT + (size_t)i]);
@@ -119,15 +120,26 @@ static void put_rows(FILE *out, const struct sr_gonio_beam *b, const struct sr_g
     }
 }
 
-static sr_status measure(const struct arguments *a, const struct sr_import_result *scene, FILE *out, struct sr_error *error)
+static sr_status measure(const struct arguments *a, const struct sr_import_result *scene, FILE *out,
+                         struct sr_error *error)
 {
-    struct sr_gonio g = {.scene = scene->scene, .seed = (uint32_t)a->seed, .replicates = (uint32_t)a->replicates, .threads = (int)a->threads};
+    struct sr_gonio g = {.scene = scene->scene,
+                         .seed = (uint32_t)a->seed,
+                         .replicates = (uint32_t)a->replicates,
+                         .threads = (int)a->threads};
     uint64_t each = a->samples / a->replicates;
     g.samples = each < 1 ? 1 : each > UINT32_MAX ? UINT32_MAX : (uint32_t)each;
-    struct sr_gonio_beam b = {.x0 = a->patch[0], .x1 = a->patch[1], .y0 = a->patch[2], .y1 = a->patch[3], .is_isotropic = a->azimuths == 1,
-                              .theta_count = (uint32_t)a->cells[0], .phi_count = (uint32_t)a->cells[1]};
-    fprintf(out, "# measured on %s by steradian %s, %llu paths a direction\n# quantity: bsdf\n# angles: degrees\ntheta_i phi_i theta_o phi_o", a->scene, SR_VERSION,
-            (unsigned long long)g.samples * g.replicates);
+    struct sr_gonio_beam b = {.x0 = a->patch[0],
+                              .x1 = a->patch[1],
+                              .y0 = a->patch[2],
+                              .y1 = a->patch[3],
+                              .is_isotropic = a->azimuths == 1,
+                              .theta_count = (uint32_t)a->cells[0],
+                              .phi_count = (uint32_t)a->cells[1]};
+    fprintf(
+        out,
+        "# measured on %s by steradian %s, %llu paths a direction\n# quantity: bsdf\n# angles: degrees\ntheta_i phi_i theta_o phi_o",
+        a->scene, SR_VERSION, (unsigned long long)g.samples * g.replicates);
     for (int i = 0; i < SR_LAMBDA_COUNT; ++i) {
         b.lambda[i] = 400 + 300 * (float)i / (SR_LAMBDA_COUNT - 1);
         fprintf(out, " %.6gnm", (double)b.lambda[i]);
@@ -149,11 +161,14 @@ static sr_status measure(const struct arguments *a, const struct sr_import_resul
                     sum += s.f[c * SR_LAMBDA_COUNT + (size_t)middle];
                     u += s.f_error[c * SR_LAMBDA_COUNT + (size_t)middle];
                 }
-                printf("%8.2f %8.2f %14.5f %12.2g %10.5f %14.2g\n", (double)b.theta_i * 180 / M_PI, (double)b.phi_i * 180 / M_PI, s.reflected[middle],
-                       1.96 * s.reflected_error[middle], s.transmitted[middle], sum > 0 ? 196 * u / sum : 0);
+                printf("%8.2f %8.2f %14.5f %12.2g %10.5f %14.2g\n", (double)b.theta_i * 180 / M_PI,
+                       (double)b.phi_i * 180 / M_PI, s.reflected[middle], 1.96 * s.reflected_error[middle],
+                       s.transmitted[middle], sum > 0 ? 196 * u / sum : 0);
                 if (s.missed > 0)
-                    fprintf(stderr, "warning: %.3g %% of the beam from theta_i %.4g deg met nothing: the specimen is too small for the patch\n", 100 * s.missed,
-                            (double)b.theta_i * 180 / M_PI);
+                    fprintf(
+                        stderr,
+                        "warning: %.3g %% of the beam from theta_i %.4g deg met nothing: the specimen is too small for the patch\n",
+                        100 * s.missed, (double)b.theta_i * 180 / M_PI);
             }
             sr_arena_free(&arena);
         }
@@ -171,7 +186,8 @@ static int run(int argc, char **argv)
     struct sr_log log = command_log(&quiet);
     struct sr_import_options options = {.threads = (int)a.threads};
     struct sr_import_result scene;
-    if (command_check_output(a.output, &error) != SR_OK || sr_import_pbrt(a.scene, &options, &scene, &log, &error) != SR_OK)
+    if (command_check_output(a.output, &error) != SR_OK ||
+        sr_import_pbrt(a.scene, &options, &scene, &log, &error) != SR_OK)
         return command_fail("brdf measure", &error);
     char *text = NULL;
     size_t size = 0;
@@ -189,4 +205,5 @@ static int run(int argc, char **argv)
     return error.status ? command_fail("brdf measure", &error) : 0;
 }
 
-const struct command brdf_measure = {"brdf measure", "a table of a piece of geometry: a virtual gonioreflectometer", help, run};
+const struct command brdf_measure = {"brdf measure", "a table of a piece of geometry: a virtual gonioreflectometer",
+                                     help, run};

@@ -2,7 +2,8 @@
 /* The field's classic figure: six scattering models as bodies in space, with the light's and the mirror's direction.
  *
  * As viewers of BRDFs have shown them since the nineties: Lambert's hemisphere, the sum of a matte and a glossy part,
- * microfacets, a brushed metal from near, the Moon and a layer of dust, which throw light back to where it comes from. */
+ * microfacets, a brushed metal from near, the Moon and a layer of dust, which throw light back to where it comes from.
+ */
 #include "brdf_plot.h"
 
 #include <stdio.h>

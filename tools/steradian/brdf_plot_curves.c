@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* brdf plot: what is drawn as curves. Lobes in the plane of incidence, f over angles, albedo, the quality of sampling. */
+/* brdf plot: what is drawn as curves. Lobes in the plane of incidence, f over angles, albedo, the quality of sampling.
+ */
 #include "brdf_plot.h"
 
 #include <math.h>
@@ -303,8 +304,8 @@ sr_status plot_theta(struct plot_builder *b)
     return SR_OK;
 }
 
-/* Both directions at theta_d from the half vector, across its plane of inclination: their cosines are equal, and there is
- * light for each theta_h below 90 deg. */
+/* Both directions at theta_d from the half vector, across its plane of inclination: their cosines are equal, and there
+ * is light for each theta_h below 90 deg. */
 static void pair_about_half(double theta_h, double theta_d, sr_vec3 *wo, sr_vec3 *wi)
 {
     double ch = cos(theta_h * degree), sh = sin(theta_h * degree), cd = cos(theta_d * degree),
@@ -409,8 +410,8 @@ sr_status plot_albedo(struct plot_builder *b)
 
 /* ---- how well the sampler follows ---- */
 
-/* pdf E / (f cos theta): 1 where as many samples are drawn as light is there; where it is small, samples that are seldom
- * drawn weigh much, and images have bright dots. */
+/* pdf E / (f cos theta): 1 where as many samples are drawn as light is there; where it is small, samples that are
+ * seldom drawn weigh much, and images have bright dots. */
 static void sampling_of(const struct plot_request *r, uint32_t specimen, const double *x, uint32_t count, double *y)
 {
     sr_vec3 wo = plot_light(r);

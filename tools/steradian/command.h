@@ -17,8 +17,8 @@ struct command {
     const char *name, *summary, *help; // help NULL: it has subcommands, and helps by itself
     int (*run)(int argc, char **argv);
 };
-extern const struct command command_render, command_measure, command_info, command_compare, command_image, command_brdf, command_glare, command_validate,
-    command_converge, command_formats, command_convert, command_merge;
+extern const struct command command_render, command_measure, command_info, command_compare, command_image, command_brdf,
+    command_glare, command_validate, command_converge, command_formats, command_convert, command_merge;
 
 /* ---- messages ---- */
 
@@ -73,10 +73,10 @@ sr_status command_select_channels(const struct sr_image *image, const char *labe
 
 json_t *command_json_number(double value);
 json_t *command_json_quantity(double value, const char *unit); // {"value": 1.5, "unit": "cd/m^2"}
-/* {"unit", "value", "standard_uncertainty", "degrees_of_freedom", "coverage_factor", "expanded_uncertainty", "level": 0.95},
- * and "upper_bound" where nothing was found */
+/* {"unit", "value", "standard_uncertainty", "degrees_of_freedom", "coverage_factor", "expanded_uncertainty", "level":
+ * 0.95}, and "upper_bound" where nothing was found */
 json_t *command_json_measured(const struct sr_quantity *q);
-json_t *command_json_text(const char *text);                   // bytes that are no UTF-8 become '?'
+json_t *command_json_text(const char *text); // bytes that are no UTF-8 become '?'
 /* Prints it, and releases it; the exit code. */
 int command_print_json(const char *name, json_t *json);
 

@@ -38,7 +38,20 @@ static const char help[] =
     "  steradian converge scenes/cornell-box.pbrt -e uniform-hemisphere -e light-area -o box.svg --strip box.png\n"
     "  steradian converge scenes/meters.pbrt --meter desk -e light-area -e light-solid-angle --reference 167.0796\n";
 
-enum { OPT_SAMPLER = 256, OPT_SAMPLES, OPT_SEEDS, OPT_REFERENCE, OPT_RESOLUTION, OPT_INTEGRAL, OPT_STRIP, OPT_STRIP_SPP, OPT_MAX_DEPTH, OPT_SEED, OPT_THREADS, OPT_JSON };
+enum {
+    OPT_SAMPLER = 256,
+    OPT_SAMPLES,
+    OPT_SEEDS,
+    OPT_REFERENCE,
+    OPT_RESOLUTION,
+    OPT_INTEGRAL,
+    OPT_STRIP,
+    OPT_STRIP_SPP,
+    OPT_MAX_DEPTH,
+    OPT_SEED,
+    OPT_THREADS,
+    OPT_JSON
+};
 
 static const struct option long_options[] = {
     {"estimator", required_argument, NULL, 'e'},
@@ -66,11 +79,14 @@ static bool take_samples(struct converge_arguments *a, const char *text)
     unsigned long long v[3] = {0, 0, 2};
     char rest;
     int n = sscanf(text, "%llu:%llu:%llu%c", &v[0], &v[1], &v[2], &rest);
-    if ((n == 2 || n == 3) && !strchr(text, '-') && v[0] >= 1 && v[1] > v[0] && v[1] <= 1u << 26 && v[2] >= 2 && v[2] <= 1024) {
+    if ((n == 2 || n == 3) && !strchr(text, '-') && v[0] >= 1 && v[1] > v[0] && v[1] <= 1u << 26 && v[2] >= 2 &&
+        v[2] <= 1024) {
         a->first = v[0], a->last = v[1], a->factor = v[2], a->has_spp = true;
         return true;
     }
-    command_usage(&command_converge, "--samples %s: A:B or A:B:F was expected, 1 <= A < B <= 67108864 and a factor F from 2 to 1024", text);
+    command_usage(&command_converge,
+                  "--samples %s: A:B or A:B:F was expected, 1 <= A < B <= 67108864 and a factor F from 2 to 1024",
+                  text);
     return false;
 }
 
@@ -93,8 +109,11 @@ static bool take(struct converge_arguments *a, int option, const char *name, con
         a->meter = text;
         return true;
     case 'o':
-        if (a->output_count == CONVERGE_OUTPUTS || !(sr_path_has_ending(text, ".svg") || sr_path_has_ending(text, ".png") || sr_path_has_ending(text, ".csv"))) {
-            command_usage(c, "-o %s: at most %d files with the ending .svg, .png or .csv were expected", text, CONVERGE_OUTPUTS);
+        if (a->output_count == CONVERGE_OUTPUTS ||
+            !(sr_path_has_ending(text, ".svg") || sr_path_has_ending(text, ".png") ||
+              sr_path_has_ending(text, ".csv"))) {
+            command_usage(c, "-o %s: at most %d files with the ending .svg, .png or .csv were expected", text,
+                          CONVERGE_OUTPUTS);
             return false;
         }
         a->outputs[a->output_count++] = text;
@@ -119,7 +138,8 @@ static bool take(struct converge_arguments *a, int option, const char *name, con
         return true;
     case OPT_STRIP:
         a->strip = text;
-        return sr_path_has_ending(text, ".png") || (command_usage(c, "--strip %s: the ending .png was expected", text), false);
+        return sr_path_has_ending(text, ".png") ||
+               (command_usage(c, "--strip %s: the ending .png was expected", text), false);
     case OPT_STRIP_SPP:
         return command_parse_uint(c, name, text, 1, 1 << 20, &a->strip_spp);
     case OPT_MAX_DEPTH:
@@ -147,9 +167,12 @@ static int parse(int argc, char **argv, struct converge_arguments *a)
             return SR_ERROR_USAGE;
     }
     if (a->integral ? optind != argc : optind + 1 != argc)
-        return command_usage(&command_converge, a->integral ? "--integral stands without a scene" : "one scene file, or --integral, was expected");
+        return command_usage(&command_converge, a->integral ? "--integral stands without a scene"
+                                                            : "one scene file, or --integral, was expected");
     if (a->integral && (a->estimator_count || a->meter || a->strip))
-        return command_usage(&command_converge, "--integral is sampled in its own ways: --estimator, --meter and --strip do not go with it");
+        return command_usage(
+            &command_converge,
+            "--integral is sampled in its own ways: --estimator, --meter and --strip do not go with it");
     a->scene = argv[optind];
     bool is_light = a->integral || a->meter;
     if (!a->has_spp)
@@ -159,7 +182,8 @@ static int parse(int argc, char **argv, struct converge_arguments *a)
     if (!a->samplers[0] && !a->samplers[1])
         a->samplers[SR_SAMPLER_SOBOL] = true, a->samplers[SR_SAMPLER_INDEPENDENT] = a->integral;
     if (!a->integral && !a->estimator_count) {
-        static const char *const usual[] = {"uniform-hemisphere", "cosine-hemisphere", "light-area", "light-solid-angle", "bsdf+light-solid-angle"};
+        static const char *const usual[] = {"uniform-hemisphere", "cosine-hemisphere", "light-area",
+                                            "light-solid-angle", "bsdf+light-solid-angle"};
         memcpy(a->estimators, usual, sizeof usual);
         a->estimator_count = 5;
     }
@@ -180,7 +204,8 @@ static int converge_integral(const struct converge_arguments *a, struct converge
 {
     const struct sr_study_integral *integral = sr_study_integral_find(a->integral);
     if (!integral)
-        return command_usage(&command_converge, "--integral %s: there is none of this name; --integral list tells them", a->integral);
+        return command_usage(&command_converge, "--integral %s: there is none of this name; --integral list tells them",
+                             a->integral);
     study->what = integral->formula;
     study->unit = "1";
     study->reference = integral->value;
@@ -191,10 +216,12 @@ static int converge_integral(const struct converge_arguments *a, struct converge
             struct converge_series *series = &study->series[study->series_count++];
             series->estimator = integral->strategies[s].name;
             series->sampler = (enum sr_sampler_kind)sampler;
-            for (uint64_t n = a->first; n <= a->last && series->count < SR_STUDY_POINTS; n *= a->factor, ++series->count) {
+            for (uint64_t n = a->first; n <= a->last && series->count < SR_STUDY_POINTS;
+                 n *= a->factor, ++series->count) {
                 series->n[series->count] = (double)n;
                 series->error[series->count] =
-                    sr_study_error(integral, s, series->sampler, (uint32_t)a->seed, (uint32_t)n, (uint32_t)a->seeds, &series->time_s[series->count]);
+                    sr_study_error(integral, s, series->sampler, (uint32_t)a->seed, (uint32_t)n, (uint32_t)a->seeds,
+                                   &series->time_s[series->count]);
             }
         }
     return 0;
@@ -216,7 +243,10 @@ static int run(int argc, char **argv)
     for (uint32_t i = 0; code == 0 && i < study->series_count; ++i) {
         struct converge_series *s = &study->series[i];
         bool is_one_sampler = !(a.samplers[0] && a.samplers[1]);
-        snprintf(s->label, sizeof s->label, "%s%s%s", s->estimator, is_one_sampler ? "" : ", ", is_one_sampler ? "" : s->sampler == SR_SAMPLER_SOBOL ? "sobol" : "independent");
+        snprintf(s->label, sizeof s->label, "%s%s%s", s->estimator, is_one_sampler ? "" : ", ",
+                 is_one_sampler                   ? ""
+                 : s->sampler == SR_SAMPLER_SOBOL ? "sobol"
+                                                  : "independent");
         s->has_slope = sr_study_fit(s->n, s->error, s->count, &s->slope);
     }
     if (code == 0)
@@ -232,4 +262,5 @@ static int run(int argc, char **argv)
     return code;
 }
 
-const struct command command_converge = {"converge", "how errors fall with samples and time, by estimator and sampler", help, run};
+const struct command command_converge = {"converge", "how errors fall with samples and time, by estimator and sampler",
+                                         help, run};

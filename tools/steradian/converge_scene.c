@@ -2,11 +2,12 @@
 /* steradian converge: errors of a scene's picture, or of one of its meters' readings.
  *
  *     error^2 = mean over seeds of (X - R)^2 / R^2                               of a reading, R its reference
- *     error^2 = mean over seeds and pixels of (Y - R)^2 / (R^2 + 0.01 mean(R)^2)  of luminances, dark pixels not overrated
+ *     error^2 = mean over seeds and pixels of (Y - R)^2 / (R^2 + 0.01 mean(R)^2)  of luminances, dark pixels not
+ * overrated
  *
- * less the reference's own variance. All estimators have the same maxdepth as the reference, or they would not converge to it.
- * Pixels look through their middles, so that the edges of what is seen, which no estimator of light helps, have no say. Time is that
- * of the processors, so that what else a machine does matters little. */
+ * less the reference's own variance. All estimators have the same maxdepth as the reference, or they would not converge
+ * to it. Pixels look through their middles, so that the edges of what is seen, which no estimator of light helps, have
+ * no say. Time is that of the processors, so that what else a machine does matters little. */
 #include "converge.h"
 
 #include <stdio.h>
@@ -16,7 +17,8 @@
 
 static const char reference_estimator[] = "bsdf+light-solid-angle:power";
 
-static sr_status open_scene(const struct converge_arguments *a, uint32_t width, uint32_t height, struct sr_import_result *scene, struct sr_error *error)
+static sr_status open_scene(const struct converge_arguments *a, uint32_t width, uint32_t height,
+                            struct sr_import_result *scene, struct sr_error *error)
 {
     bool quiet = true;
     struct sr_log log = command_log(&quiet);
@@ -27,7 +29,8 @@ static sr_status open_scene(const struct converge_arguments *a, uint32_t width, 
 }
 
 /* The scene with a picture of `width` pixels, in its own shape, unless the arguments say how large. */
-static sr_status open_small(const struct converge_arguments *a, uint32_t width, struct sr_import_result *scene, struct sr_error *error)
+static sr_status open_small(const struct converge_arguments *a, uint32_t width, struct sr_import_result *scene,
+                            struct sr_error *error)
 {
     if (a->resolution[0] >= 1 && a->resolution[1] >= 1 && a->resolution[0] <= 4096 && a->resolution[1] <= 4096)
         return open_scene(a, (uint32_t)a->resolution[0], (uint32_t)a->resolution[1], scene, error);
@@ -40,9 +43,15 @@ static sr_status open_small(const struct converge_arguments *a, uint32_t width, 
 
 static struct sr_render_job job_of(const struct converge_arguments *a, const struct sr_import_result *scene)
 {
-    return (struct sr_render_job){
-        .scene = scene->scene, .sensor = scene->sensor, .filter = scene->filter, .integrator = scene->integrator, .film = scene->film,
-        .seed = (uint32_t)a->seed, .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX}, .jitter_lambda = true, .threads = (int)a->threads};
+    return (struct sr_render_job){.scene = scene->scene,
+                                  .sensor = scene->sensor,
+                                  .filter = scene->filter,
+                                  .integrator = scene->integrator,
+                                  .film = scene->film,
+                                  .seed = (uint32_t)a->seed,
+                                  .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
+                                  .jitter_lambda = true,
+                                  .threads = (int)a->threads};
 }
 
 /* The luminances of a picture's pixels, and the variances of their means or NULL. */
@@ -68,12 +77,13 @@ static sr_status luminances(const struct sr_render_job *job, double *Y, double *
 
 /* What there is to compare with: a picture or a reading that took long. */
 struct reference {
-    uint32_t pixels; // 0: a reading
-    double *Y, *weight; // of pixels: luminance, 1 / (Y^2 + 0.01 mean^2)
+    uint32_t pixels;       // 0: a reading
+    double *Y, *weight;    // of pixels: luminance, 1 / (Y^2 + 0.01 mean^2)
     double mean, variance; // variance of a reading [unit^2], of a picture relative and weighed [1]
 };
 
-static sr_status picture_error(const struct sr_render_job *base, const struct converge_arguments *a, const struct reference *r, double *Y, double *error2, double *time_s,
+static sr_status picture_error(const struct sr_render_job *base, const struct converge_arguments *a,
+                               const struct reference *r, double *Y, double *error2, double *time_s,
                                struct sr_error *error)
 {
     *error2 = *time_s = 0;
@@ -92,8 +102,8 @@ static sr_status picture_error(const struct sr_render_job *base, const struct co
     return SR_OK;
 }
 
-static sr_status picture_reference(const struct sr_render_job *base, const struct converge_arguments *a, struct sr_arena *arena, struct reference *r,
-                                   struct sr_error *error)
+static sr_status picture_reference(const struct sr_render_job *base, const struct converge_arguments *a,
+                                   struct sr_arena *arena, struct reference *r, struct sr_error *error)
 {
     struct sr_render_job job = *base;
     job.replicates = 16;
@@ -116,8 +126,8 @@ static sr_status picture_reference(const struct sr_render_job *base, const struc
     return SR_OK;
 }
 
-static sr_status read_meter(const struct sr_render_job *job, const struct sr_meter *meter, uint64_t n, uint32_t seeds, struct sr_arena *arena,
-                            struct sr_measurement *m, struct sr_error *error)
+static sr_status read_meter(const struct sr_render_job *job, const struct sr_meter *meter, uint64_t n, uint32_t seeds,
+                            struct sr_arena *arena, struct sr_measurement *m, struct sr_error *error)
 {
     struct sr_measure_settings settings = {.samples = n * seeds, .replicates = seeds, .system = SR_PHOTOPIC};
     return sr_measure(job, meter, &settings, arena, m, error);
@@ -131,8 +141,9 @@ static const struct sr_meter *find_meter(const struct sr_import_result *scene, c
     return NULL;
 }
 
-static sr_status run_series(const struct converge_arguments *a, struct sr_render_job job, const struct sr_meter *meter, const struct reference *r, double *Y,
-                            struct sr_arena *arena, struct converge_series *series, struct sr_error *error)
+static sr_status run_series(const struct converge_arguments *a, struct sr_render_job job, const struct sr_meter *meter,
+                            const struct reference *r, double *Y, struct sr_arena *arena,
+                            struct converge_series *series, struct sr_error *error)
 {
     for (uint64_t n = a->first; n <= a->last && series->count < SR_STUDY_POINTS; n *= a->factor, ++series->count) {
         double error2, time_s;
@@ -143,7 +154,8 @@ static sr_status run_series(const struct converge_arguments *a, struct sr_render
             if (read_meter(&job, meter, n, (uint32_t)a->seeds, arena, &m, error) != SR_OK)
                 return error->status;
             double u = m.value[SR_PHOTOPIC].u, S = (double)a->seeds, d = m.value[SR_PHOTOPIC].value - r->mean;
-            error2 = ((S - 1) * u * u + d * d - r->variance) / (r->mean * r->mean); // u^2 = 1/(S (S - 1)) SUM (X_s - mean)^2
+            error2 =
+                ((S - 1) * u * u + d * d - r->variance) / (r->mean * r->mean); // u^2 = 1/(S (S - 1)) SUM (X_s - mean)^2
             time_s = (double)(clock() - start) / CLOCKS_PER_SEC / S;
         } else {
             job.spp = (uint32_t)n;
@@ -157,16 +169,18 @@ static sr_status run_series(const struct converge_arguments *a, struct sr_render
     return SR_OK;
 }
 
-static sr_status run_all(const struct converge_arguments *a, const struct sr_import_result *scene, struct sr_arena *arena, struct converge_study *study,
-                         struct sr_error *error)
+static sr_status run_all(const struct converge_arguments *a, const struct sr_import_result *scene,
+                         struct sr_arena *arena, struct converge_study *study, struct sr_error *error)
 {
     struct sr_render_job job = job_of(a, scene);
     const struct sr_meter *meter = a->meter ? find_meter(scene, a->meter) : NULL;
     if (a->meter && !meter)
-        return sr_fail(error, SR_ERROR_USAGE, "%s: there is no meter \"%s\"; steradian measure --list tells them", a->scene, a->meter);
+        return sr_fail(error, SR_ERROR_USAGE, "%s: there is no meter \"%s\"; steradian measure --list tells them",
+                       a->scene, a->meter);
     struct reference r = {0};
     struct sr_integrator base = scene->integrator;
-    if (a->max_depth && sr_integrator_parse(sr_arena_printf(arena, "path,maxdepth=%s", a->max_depth), &base, arena, &base, error) != SR_OK)
+    if (a->max_depth && sr_integrator_parse(sr_arena_printf(arena, "path,maxdepth=%s", a->max_depth), &base, arena,
+                                            &base, error) != SR_OK)
         return error->status;
     if (sr_integrator_parse(reference_estimator, &base, arena, &job.integrator, error) != SR_OK)
         return error->status;
@@ -182,12 +196,14 @@ static sr_status run_all(const struct converge_arguments *a, const struct sr_imp
         return error->status;
     }
     if (!(fabs(r.mean) > 0))
-        return sr_fail(error, SR_ERROR_INPUT, "%s: the reference is black, so that there is no relative error", a->scene);
+        return sr_fail(error, SR_ERROR_INPUT, "%s: the reference is black, so that there is no relative error",
+                       a->scene);
     study->reference = r.mean;
     study->reference_u = sqrt(r.variance) * (meter ? 1 : r.mean);
     study->unit = "1";
     study->what = sr_arena_printf(arena, "%s, %s: relative error", a->scene, meter ? a->meter : "luminance of pixels");
-    double *Y = meter ? NULL : sr_arena_alloc(arena, (size_t)scene->film.width * (size_t)scene->film.height * sizeof *Y);
+    double *Y =
+        meter ? NULL : sr_arena_alloc(arena, (size_t)scene->film.width * (size_t)scene->film.height * sizeof *Y);
     if (!meter && !Y)
         return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory");
     for (int e = 0; e < a->estimator_count; ++e) {
@@ -224,7 +240,8 @@ int converge_scene(const struct converge_arguments *a, struct converge_study *st
 
 /* ---- the strip ---- */
 
-static sr_status strip_picture(const struct sr_render_job *job, float *exposure_EV, struct sr_arena *arena, struct sr_plot_panel *panel, struct sr_error *error)
+static sr_status strip_picture(const struct sr_render_job *job, float *exposure_EV, struct sr_arena *arena,
+                               struct sr_plot_panel *panel, struct sr_error *error)
 {
     struct sr_film *film;
     struct sr_render_report report;
@@ -241,7 +258,8 @@ static sr_status strip_picture(const struct sr_render_job *job, float *exposure_
             uint8_t *pixels = sr_arena_alloc(arena, 3 * count);
             for (size_t i = 0; pixels && i < 3 * count; ++i)
                 pixels[i] = mapped->bytes[i / 3 * mapped->channel_count + i % 3];
-            *panel = (struct sr_plot_panel){.kind = SR_PLOT_PICTURE, .pixels = pixels, .rows = mapped->height, .columns = mapped->width};
+            *panel = (struct sr_plot_panel){
+                .kind = SR_PLOT_PICTURE, .pixels = pixels, .rows = mapped->height, .columns = mapped->width};
             if (!pixels)
                 sr_fail(error, SR_ERROR_RESOURCE, "not enough memory");
             sr_image_free(mapped);
@@ -281,7 +299,11 @@ int converge_strip(const struct converge_arguments *a, struct sr_arena *arena)
     char title[64];
     snprintf(title, sizeof title, "%llu samples for each pixel", (unsigned long long)a->strip_spp);
     uint32_t columns = count < 5 ? count : 5, rows = columns ? (count + columns - 1) / columns : 1;
-    struct sr_plot_figure figure = {.title = title, .panels = panels, .panel_count = count, .columns = columns, .width = 290.0 * columns,
+    struct sr_plot_figure figure = {.title = title,
+                                    .panels = panels,
+                                    .panel_count = count,
+                                    .columns = columns,
+                                    .width = 290.0 * columns,
                                     .height = 60 + rows * (290 * aspect + 50)};
     if (!error.status)
         sr_plot_write(&figure, a->strip, &error);

@@ -65,9 +65,12 @@ static bool same_folder(const char *a, const char *b)
 
 static int run(int argc, char **argv)
 {
-    static const struct option options[] = {{"output", required_argument, NULL, 'o'}, {"upgrade", no_argument, NULL, UPGRADE},
-                                            {"ply", optional_argument, NULL, PLY},    {"includes", required_argument, NULL, INCLUDES},
-                                            {"for", required_argument, NULL, FOR},    {"quiet", no_argument, NULL, 'q'},
+    static const struct option options[] = {{"output", required_argument, NULL, 'o'},
+                                            {"upgrade", no_argument, NULL, UPGRADE},
+                                            {"ply", optional_argument, NULL, PLY},
+                                            {"includes", required_argument, NULL, INCLUDES},
+                                            {"for", required_argument, NULL, FOR},
+                                            {"quiet", no_argument, NULL, 'q'},
                                             {NULL, 0, NULL, 0}};
     struct sr_convert_options o = {0};
     bool quiet = false, has_includes = false, has_ply = false;
@@ -75,9 +78,15 @@ static int run(int argc, char **argv)
     for (int c; (c = command_next_option(argc, argv, ":o:q", options, NULL)) != -1;) {
         bool ok = true;
         switch (c) {
-        case 'o': o.out = optarg; break;
-        case 'q': quiet = true; break;
-        case UPGRADE: o.upgrades = true; break;
+        case 'o':
+            o.out = optarg;
+            break;
+        case 'q':
+            quiet = true;
+            break;
+        case UPGRADE:
+            o.upgrades = true;
+            break;
         case PLY:
             has_ply = true;
             ok = !optarg || command_parse_uint(&command_convert, "ply", optarg, 0, UINT32_MAX, &vertices);
@@ -86,19 +95,24 @@ static int run(int argc, char **argv)
             has_includes = true;
             ok = parse_word("includes", optarg, "flatten", "keep", &o.flattens);
             break;
-        case FOR: ok = parse_word("for", optarg, "steradian", "pbrt", &o.for_steradian); break;
-        default: return command_bad_option(&command_convert, options, c, argv);
+        case FOR:
+            ok = parse_word("for", optarg, "steradian", "pbrt", &o.for_steradian);
+            break;
+        default:
+            return command_bad_option(&command_convert, options, c, argv);
         }
         if (!ok)
             return SR_ERROR_USAGE;
     }
     if (optind + 1 != argc)
-        return command_usage(&command_convert, optind == argc ? "a scene was expected" : "one scene was expected, not %d", argc - optind);
+        return command_usage(&command_convert,
+                             optind == argc ? "a scene was expected" : "one scene was expected, not %d", argc - optind);
     const char *in = argv[optind];
     if (!o.out)
         return command_usage(&command_convert, "-o FILE was expected, or -o - for standard output");
-    if (strcmp(o.out, "-") == 0 && (has_ply ? vertices > 0 : !is_pbrt(in)) )
-        return command_usage(&command_convert, "meshes cannot be written beside standard output: --ply=0 keeps them in the text");
+    if (strcmp(o.out, "-") == 0 && (has_ply ? vertices > 0 : !is_pbrt(in)))
+        return command_usage(&command_convert,
+                             "meshes cannot be written beside standard output: --ply=0 keeps them in the text");
     o.ply_above = has_ply || !is_pbrt(in) ? (uint32_t)vertices : 0;
     if (!has_includes)
         o.flattens = o.upgrades || !same_folder(in, o.out);
@@ -114,4 +128,5 @@ static int run(int argc, char **argv)
     return error.status == SR_OK ? 0 : command_fail("convert", &error);
 }
 
-const struct command command_convert = {.name = "convert", .summary = "write scenes as pbrt-v4 text, tidied or upgraded", .help = help, .run = run};
+const struct command command_convert = {
+    .name = "convert", .summary = "write scenes as pbrt-v4 text, tidied or upgraded", .help = help, .run = run};

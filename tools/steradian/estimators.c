@@ -11,7 +11,12 @@ static void print_params(const struct sr_param *p)
 {
     for (; p && p->name; ++p)
         if (strcmp(p->name, "lightsampler") != 0 && strncmp(p->text, "accepted", 8) != 0)
-            printf("  %-20s   %s%s%s\n", "", p->name, p->kind == SR_PARAM_BOOL ? "=true|false: " : p->kind == SR_PARAM_STRING ? ": at first " : p->kind == SR_PARAM_ENUM ? "=" : ": ", p->text);
+            printf("  %-20s   %s%s%s\n", "", p->name,
+                   p->kind == SR_PARAM_BOOL     ? "=true|false: "
+                   : p->kind == SR_PARAM_STRING ? ": at first "
+                   : p->kind == SR_PARAM_ENUM   ? "="
+                                                : ": ",
+                   p->text);
 }
 
 bool command_tells_estimators(int argc, char **argv)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* steradian formats: everything that a scene file may say, from the tables that the reader reads by. docs/format.md is its output. */
+/* steradian formats: everything that a scene file may say, from the tables that the reader reads by. docs/format.md is
+ * its output. */
 #include "command.h"
 #include "formats_words.h"
 
@@ -22,37 +23,59 @@ struct printer {
 static const char *type_of(enum sr_param_kind kind)
 {
     switch (kind) {
-    case SR_PARAM_BOOL: return "bool";
-    case SR_PARAM_INT: return "integer";
-    case SR_PARAM_FLOAT: return "float";
+    case SR_PARAM_BOOL:
+        return "bool";
+    case SR_PARAM_INT:
+        return "integer";
+    case SR_PARAM_FLOAT:
+        return "float";
     case SR_PARAM_ENUM:
-    case SR_PARAM_STRING: return "string";
-    case SR_PARAM_FILE: return "string (file)";
-    case SR_PARAM_POINT2: return "point2";
-    case SR_PARAM_POINT3: return "point3";
-    case SR_PARAM_VECTOR3: return "vector3";
-    case SR_PARAM_NORMAL3: return "normal";
+    case SR_PARAM_STRING:
+        return "string";
+    case SR_PARAM_FILE:
+        return "string (file)";
+    case SR_PARAM_POINT2:
+        return "point2";
+    case SR_PARAM_POINT3:
+        return "point3";
+    case SR_PARAM_VECTOR3:
+        return "vector3";
+    case SR_PARAM_NORMAL3:
+        return "normal";
     case SR_PARAM_ALBEDO:
-    case SR_PARAM_UNBOUNDED: return "rgb, spectrum";
-    case SR_PARAM_ILLUMINANT: return "rgb, spectrum, blackbody";
-    case SR_PARAM_FLOAT_TEXTURE: return "float, texture";
+    case SR_PARAM_UNBOUNDED:
+        return "rgb, spectrum";
+    case SR_PARAM_ILLUMINANT:
+        return "rgb, spectrum, blackbody";
+    case SR_PARAM_FLOAT_TEXTURE:
+        return "float, texture";
     case SR_PARAM_ALBEDO_TEXTURE:
-    case SR_PARAM_UNBOUNDED_TEXTURE: return "rgb, spectrum, texture";
-    case SR_PARAM_MATERIALS: return "string[] (materials)";
-    case SR_PARAM_INTS: return "integer[]";
-    case SR_PARAM_FLOATS: return "float[]";
-    case SR_PARAM_POINT2S: return "point2[]";
-    case SR_PARAM_POINT3S: return "point3[]";
-    case SR_PARAM_VECTOR3S: return "vector3[]";
-    case SR_PARAM_NORMAL3S: return "normal[]";
-    case SR_PARAM_RGBS: return "rgb[]";
+    case SR_PARAM_UNBOUNDED_TEXTURE:
+        return "rgb, spectrum, texture";
+    case SR_PARAM_MATERIALS:
+        return "string[] (materials)";
+    case SR_PARAM_INTS:
+        return "integer[]";
+    case SR_PARAM_FLOATS:
+        return "float[]";
+    case SR_PARAM_POINT2S:
+        return "point2[]";
+    case SR_PARAM_POINT3S:
+        return "point3[]";
+    case SR_PARAM_VECTOR3S:
+        return "vector3[]";
+    case SR_PARAM_NORMAL3S:
+        return "normal[]";
+    case SR_PARAM_RGBS:
+        return "rgb[]";
     }
     return "?";
 }
 
 static bool is_number(enum sr_param_kind kind)
 {
-    return kind != SR_PARAM_BOOL && kind != SR_PARAM_ENUM && kind != SR_PARAM_STRING && kind != SR_PARAM_FILE && kind != SR_PARAM_MATERIALS;
+    return kind != SR_PARAM_BOOL && kind != SR_PARAM_ENUM && kind != SR_PARAM_STRING && kind != SR_PARAM_FILE &&
+           kind != SR_PARAM_MATERIALS;
 }
 
 static const char *default_of(const struct sr_param *p, char buffer[128])
@@ -140,7 +163,9 @@ static bool is_word(const char *kind)
 
 static const char *title_of(const char *kind)
 {
-    return strcmp(kind, "directive") == 0 ? "Directives" : strcmp(kind, "annotation") == 0 ? "Directives in comments `#@`" : kind;
+    return strcmp(kind, "directive") == 0    ? "Directives"
+           : strcmp(kind, "annotation") == 0 ? "Directives in comments `#@`"
+                                             : kind;
 }
 
 static void print_heading(struct printer *pr, const struct sr_import_plugin *plugin)
@@ -157,9 +182,11 @@ static void print_heading(struct printer *pr, const struct sr_import_plugin *plu
     const char *pbrt = pbrt_list(plugin);
     const char *who = pbrt ? "" : " (Steradian only)";
     if (pr->style == MARKDOWN)
-        printf(plugin->name[0] ? "\n### %s \"%s\"%s\n" : "\n### %s%.0s: what all have%s\n", plugin->kind, plugin->name, who);
+        printf(plugin->name[0] ? "\n### %s \"%s\"%s\n" : "\n### %s%.0s: what all have%s\n", plugin->kind, plugin->name,
+               who);
     else
-        printf(plugin->name[0] ? "\n  %s \"%s\"%s\n" : "\n  %s%.0s: what all have%s\n", plugin->kind, plugin->name, who);
+        printf(plugin->name[0] ? "\n  %s \"%s\"%s\n" : "\n  %s%.0s: what all have%s\n", plugin->kind, plugin->name,
+               who);
 }
 
 static void print_row(const struct printer *pr, const struct sr_import_plugin *plugin, const struct sr_param *p)
@@ -168,10 +195,11 @@ static void print_row(const struct printer *pr, const struct sr_import_plugin *p
     const char *unit = p->unit && is_number(p->kind) && strcmp(p->unit, "1") != 0 ? p->unit : "";
     const char *by = is_read_by_pbrt(plugin, p->name) ? "pbrt-v4" : "Steradian only";
     if (pr->style == MARKDOWN)
-        printf("| `%s` | %s | %s | %s | %s | %s | %s |\n", p->name, type_of(p->kind), unit, range_of(p, range), default_of(p, initial), meaning(plugin, p), by);
+        printf("| `%s` | %s | %s | %s | %s | %s | %s |\n", p->name, type_of(p->kind), unit, range_of(p, range),
+               default_of(p, initial), meaning(plugin, p), by);
     else
-        printf("    %-22s %-24s %-6s %-22s %-10s %s%s\n", p->name, type_of(p->kind), unit, range_of(p, range), default_of(p, initial), meaning(plugin, p),
-               is_read_by_pbrt(plugin, p->name) ? "" : " [Steradian only]");
+        printf("    %-22s %-24s %-6s %-22s %-10s %s%s\n", p->name, type_of(p->kind), unit, range_of(p, range),
+               default_of(p, initial), meaning(plugin, p), is_read_by_pbrt(plugin, p->name) ? "" : " [Steradian only]");
 }
 
 /* Parameters that pbrt reads and the table does not have. */
@@ -225,7 +253,8 @@ static void visit(void *context, const struct sr_import_plugin *plugin)
         return;
     ++pr->count;
     for (int i = 0; format_pbrt[i].kind; ++i)
-        if (strcmp(format_pbrt[i].name, plugin->name) == 0 && strcmp(general(format_pbrt[i].kind), general(plugin->kind)) == 0)
+        if (strcmp(format_pbrt[i].name, plugin->name) == 0 &&
+            strcmp(general(format_pbrt[i].kind), general(plugin->kind)) == 0)
             pr->is_here[i] = true;
     if (pr->style == JSON) {
         add_json(pr, plugin);
@@ -254,7 +283,8 @@ static void print_absent(const struct printer *pr)
         if (!has_begun)
             printf("\n%sOf pbrt-v4, without a table of its own here\n\n", pr->style == MARKDOWN ? "## " : "");
         has_begun = true;
-        printf(pr->style == MARKDOWN ? "- %s \"%s\": %s\n" : "  %s \"%s\": %s\n", w->kind, w->name, w->text[0] ? w->text : "no parameters");
+        printf(pr->style == MARKDOWN ? "- %s \"%s\": %s\n" : "  %s \"%s\": %s\n", w->kind, w->name,
+               w->text[0] ? w->text : "no parameters");
     }
 }
 
@@ -272,7 +302,8 @@ static const char help[] =
 
 static int run(int argc, char **argv)
 {
-    static const struct option options[] = {{"markdown", no_argument, NULL, 'm'}, {"json", no_argument, NULL, 'j'}, {NULL, 0, NULL, 0}};
+    static const struct option options[] = {
+        {"markdown", no_argument, NULL, 'm'}, {"json", no_argument, NULL, 'j'}, {NULL, 0, NULL, 0}};
     struct printer pr = {.style = PLAIN};
     for (int o; (o = command_next_option(argc, argv, ":", options, NULL)) != -1;) {
         if (o != 'm' && o != 'j')
@@ -286,18 +317,20 @@ static int run(int argc, char **argv)
     if (pr.style == JSON)
         pr.json = json_array();
     if (pr.style == MARKDOWN && !pr.kind)
-        printf("# What a scene file may say\n\n"
-               "Made by `make format-reference` from the tables by which scenes are read; do not edit. In the last column: `pbrt-v4`, both\n"
-               "renderers read it; `Steradian only`, write it in a comment `#@`, or pbrt refuses the file; `pbrt-v4 only`, it is named in a\n"
-               "warning and does nothing. Defaults left empty: none, or said in the meaning. Lengths are in metres, unless the scene's unit\n"
-               "is another. How the words work together: [units](units.md), [conventions](conventions.md).\n");
+        printf(
+            "# What a scene file may say\n\n"
+            "Made by `make format-reference` from the tables by which scenes are read; do not edit. In the last column: `pbrt-v4`, both\n"
+            "renderers read it; `Steradian only`, write it in a comment `#@`, or pbrt refuses the file; `pbrt-v4 only`, it is named in a\n"
+            "warning and does nothing. Defaults left empty: none, or said in the meaning. Lengths are in metres, unless the scene's unit\n"
+            "is another. How the words work together: [units](units.md), [conventions](conventions.md).\n");
     sr_import_plugins(visit, &pr);
     if (pr.style == JSON)
         return command_print_json("formats", pr.json);
     if (!pr.kind)
         print_absent(&pr);
     if (pr.count == 0)
-        return command_usage(&command_formats, "there is no %s%s%s%s", pr.kind, pr.name ? " \"" : "", pr.name ? pr.name : "", pr.name ? "\"" : "");
+        return command_usage(&command_formats, "there is no %s%s%s%s", pr.kind, pr.name ? " \"" : "",
+                             pr.name ? pr.name : "", pr.name ? "\"" : "");
     return 0;
 }
 

@@ -52,7 +52,8 @@ static const struct option long_options[] = {
     {NULL, 0, NULL, 0},
 };
 
-static const char *const projections[] = {"equidistant", "equisolid", "orthographic", "stereographic", "equalarea", "equirectangular"};
+static const char *const projections[] = {"equidistant",   "equisolid", "orthographic",
+                                          "stereographic", "equalarea", "equirectangular"};
 
 static bool find_projection(const char *name, size_t length, enum sr_glare_projection *out)
 {
@@ -79,7 +80,10 @@ static int parse(int argc, char **argv, struct arguments *a)
         case OPT_PROJECTION:
             a->has_projection = true;
             if (!find_projection(optarg, strlen(optarg), &o->projection))
-                return command_usage(c, "--projection %s: equidistant, equisolid, orthographic, hemispherical, stereographic, equalarea or equirectangular was expected", optarg);
+                return command_usage(
+                    c,
+                    "--projection %s: equidistant, equisolid, orthographic, hemispherical, stereographic, equalarea or equirectangular was expected",
+                    optarg);
             break;
         case OPT_ANGLE:
             ok = command_parse_float(c, "angle", optarg, 1, 180, &o->angle_deg);
@@ -110,7 +114,8 @@ static int parse(int argc, char **argv, struct arguments *a)
     if (!ok)
         return SR_ERROR_USAGE;
     if (optind + 1 != argc)
-        return command_usage(c, optind == argc ? "a picture was expected" : "one picture was expected, there are %d", argc - optind);
+        return command_usage(c, optind == argc ? "a picture was expected" : "one picture was expected, there are %d",
+                             argc - optind);
     if (o->threshold > 0 && o->factor > 0)
         return command_usage(c, "--threshold or --factor was expected, not both");
     if (a->output && !sr_path_has_ending(a->output, ".png"))
@@ -130,7 +135,8 @@ static sr_status recognise(struct arguments *a, const struct sr_image *image, st
         mapping += strlen("; mapping ");
     if (!mapping || !find_projection(mapping, strcspn(mapping, ";"), &a->options.projection))
         return sr_fail(error, SR_ERROR_INPUT, "%s: %s; --projection NAME was expected", a->input,
-                       camera ? "its camera is no fisheye and not spherical" : "nothing tells how it maps directions to pixels");
+                       camera ? "its camera is no fisheye and not spherical"
+                              : "nothing tells how it maps directions to pixels");
     if (fov && a->options.angle_deg == 0)
         a->options.angle_deg = strtod(fov + strlen("; fov "), NULL);
     return SR_OK;
@@ -166,10 +172,12 @@ static void print_text(const struct arguments *a, const struct sr_glare *g)
     if (g->has_errors)
         printf("  (95 %%, by the standard errors of the pixels)\n");
     if (g->source_count)
-        printf("\n  %6s %8s %8s %12s %11s %9s %9s %9s %8s\n", "source", "x", "y", "L [cd/m^2]", "omega [sr]", "E [lx]", "sigma [°]", "tau [°]", "P");
+        printf("\n  %6s %8s %8s %12s %11s %9s %9s %9s %8s\n", "source", "x", "y", "L [cd/m^2]", "omega [sr]", "E [lx]",
+               "sigma [°]", "tau [°]", "P");
     for (uint32_t k = 0; k < g->source_count && k < 20; ++k) {
         const struct sr_glare_source *s = &g->sources[k];
-        printf("  %6u %8.1f %8.1f %12.5g %11.5g %9.4g %8.1f %8.1f %8.3f\n", k + 1, s->x, s->y, s->L, s->omega, s->E, s->sigma_deg, s->tau_deg, s->position);
+        printf("  %6u %8.1f %8.1f %12.5g %11.5g %9.4g %8.1f %8.1f %8.3f\n", k + 1, s->x, s->y, s->L, s->omega, s->E,
+               s->sigma_deg, s->tau_deg, s->position);
     }
     if (g->source_count > 20)
         printf("  … and %u more\n", g->source_count - 20);
@@ -180,27 +188,34 @@ static int print_json(const struct arguments *a, const struct sr_glare *g)
     json_t *indices = json_object(), *sources = json_array();
     for (int i = 0; i < SR_GLARE_INDICES; ++i)
         json_object_set_new(indices, sr_glare_index_names[i],
-                            json_pack("{s:o, s:o, s:s}", "value", command_json_number(g->index[i]), "standard_error", command_json_number(g->error[i]), "unit",
-                                      i == SR_GLARE_VCP ? "%" : "1"));
+                            json_pack("{s:o, s:o, s:s}", "value", command_json_number(g->index[i]), "standard_error",
+                                      command_json_number(g->error[i]), "unit", i == SR_GLARE_VCP ? "%" : "1"));
     for (uint32_t k = 0; k < g->source_count; ++k) {
         const struct sr_glare_source *s = &g->sources[k];
-        json_array_append_new(sources, json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:i}", "x", command_json_quantity(s->x, "pixel"), "y", command_json_quantity(s->y, "pixel"),
-                                                 "L", command_json_quantity(s->L, "cd/m^2"), "omega", command_json_quantity(s->omega, "sr"), "E", command_json_quantity(s->E, "lx"),
-                                                 "sigma", command_json_quantity(s->sigma_deg, "deg"), "tau", command_json_quantity(s->tau_deg, "deg"), "position_index",
-                                                 command_json_quantity(s->position, "1"), "pixels", (int)s->pixels));
+        json_array_append_new(
+            sources,
+            json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:i}", "x", command_json_quantity(s->x, "pixel"), "y",
+                      command_json_quantity(s->y, "pixel"), "L", command_json_quantity(s->L, "cd/m^2"), "omega",
+                      command_json_quantity(s->omega, "sr"), "E", command_json_quantity(s->E, "lx"), "sigma",
+                      command_json_quantity(s->sigma_deg, "deg"), "tau", command_json_quantity(s->tau_deg, "deg"),
+                      "position_index", command_json_quantity(s->position, "1"), "pixels", (int)s->pixels));
     }
     return command_print_json(
         "glare",
-        json_pack("{s:o, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "file", command_json_text(a->input), "projection", projections[a->options.projection],
-                  "solid_angle", command_json_quantity(g->omega, "sr"), "E_v", command_json_quantity(g->E_v, "lx"), "E_v_standard_error",
-                  command_json_quantity(g->has_errors ? g->E_v_error : (double)NAN, "lx"), "E_direct", command_json_quantity(g->E_direct, "lx"), "E_indirect",
-                  command_json_quantity(g->E_indirect, "lx"), "L_mean", command_json_quantity(g->L_mean, "cd/m^2"), "L_task", command_json_quantity(g->L_task, "cd/m^2"),
-                  "L_background", command_json_quantity(g->L_background, "cd/m^2"), "threshold", command_json_quantity(g->threshold, "cd/m^2"), "indices", indices, "sources",
-                  sources));
+        json_pack("{s:o, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "file",
+                  command_json_text(a->input), "projection", projections[a->options.projection], "solid_angle",
+                  command_json_quantity(g->omega, "sr"), "E_v", command_json_quantity(g->E_v, "lx"),
+                  "E_v_standard_error", command_json_quantity(g->has_errors ? g->E_v_error : (double)NAN, "lx"),
+                  "E_direct", command_json_quantity(g->E_direct, "lx"), "E_indirect",
+                  command_json_quantity(g->E_indirect, "lx"), "L_mean", command_json_quantity(g->L_mean, "cd/m^2"),
+                  "L_task", command_json_quantity(g->L_task, "cd/m^2"), "L_background",
+                  command_json_quantity(g->L_background, "cd/m^2"), "threshold",
+                  command_json_quantity(g->threshold, "cd/m^2"), "indices", indices, "sources", sources));
 }
 
 /* Grey as the eye sees it, sources in colours. */
-static sr_status write_picture(const struct arguments *a, const struct sr_image *image, const struct sr_glare *g, struct sr_error *error)
+static sr_status write_picture(const struct arguments *a, const struct sr_image *image, const struct sr_glare *g,
+                               struct sr_error *error)
 {
     struct sr_image *mapped;
     struct sr_tone tone = {.op = SR_TONE_REINHARD, .is_auto = true};
@@ -229,13 +244,18 @@ static int run(int argc, char **argv)
     struct sr_arena arena = {0};
     struct sr_image *image = NULL;
     struct sr_glare g;
-    if (sr_image_read(a.input, &image, &error) == SR_OK && recognise(&a, image, &error) == SR_OK && sr_glare_measure(image, &a.options, &arena, &g, &error) == SR_OK) {
+    if (sr_image_read(a.input, &image, &error) == SR_OK && recognise(&a, image, &error) == SR_OK &&
+        sr_glare_measure(image, &a.options, &arena, &g, &error) == SR_OK) {
         int channel[3];
         double weight[3];
-        if (sr_image_luminance_weights(image, channel, weight) && strcmp(image->channels[channel[0]].unit, "cd/m^2") != 0)
+        if (sr_image_luminance_weights(image, channel, weight) &&
+            strcmp(image->channels[channel[0]].unit, "cd/m^2") != 0)
             fprintf(stderr, "warning: %s does not say that its values are in cd/m^2; they are taken to be\n", a.input);
         if (g.source_count > 1000)
-            fprintf(stderr, "warning: %u sources: a noisy picture makes sources of single pixels; more samples or --threshold help\n", g.source_count);
+            fprintf(
+                stderr,
+                "warning: %u sources: a noisy picture makes sources of single pixels; more samples or --threshold help\n",
+                g.source_count);
         if (a.output)
             write_picture(&a, image, &g, &error);
         if (!error.status && a.json)
@@ -249,4 +269,5 @@ static int run(int argc, char **argv)
     return code;
 }
 
-const struct command command_glare = {"glare", "UGR, DGP and other indices of glare, from a picture of the whole field", help, run};
+const struct command command_glare = {"glare", "UGR, DGP and other indices of glare, from a picture of the whole field",
+                                      help, run};

@@ -53,7 +53,21 @@ struct arguments {
     enum sr_tone_operator tone;
 };
 
-enum { OPT_EXPOSURE = 256, OPT_TONE, OPT_CROP, OPT_CHANNEL, OPT_STATS, OPT_JSON, OPT_REGION, OPT_STATISTICS, OPT_FALSE, OPT_SCALE, OPT_LOG, OPT_CONTOURS, OPT_TITLE };
+enum {
+    OPT_EXPOSURE = 256,
+    OPT_TONE,
+    OPT_CROP,
+    OPT_CHANNEL,
+    OPT_STATS,
+    OPT_JSON,
+    OPT_REGION,
+    OPT_STATISTICS,
+    OPT_FALSE,
+    OPT_SCALE,
+    OPT_LOG,
+    OPT_CONTOURS,
+    OPT_TITLE
+};
 
 static const struct option long_options[] = {
     {"outfile", required_argument, NULL, 'o'},
@@ -108,7 +122,8 @@ static bool parse_region(const char *text, double r[4])
         is_whole &= r[i] >= 0 && r[i] <= 1 << 30 && r[i] == floor(r[i]);
     if (is_whole && r[0] < r[2] && r[1] < r[3])
         return true;
-    command_usage(&command_image, "--region %s: X0,Y0,X1,Y1 in whole pixels with X0 < X1 and Y0 < Y1 was expected", text);
+    command_usage(&command_image, "--region %s: X0,Y0,X1,Y1 in whole pixels with X0 < X1 and Y0 < Y1 was expected",
+                  text);
     return false;
 }
 
@@ -191,12 +206,14 @@ static int parse(int argc, char **argv, struct arguments *a)
     if ((f->has_scale || f->is_log || f->has_contours || f->title) && !a->is_false)
         return command_usage(c, "--scale, --log, --contours and --title belong to --false-colour");
     if (f->has_scale && !(f->scale[1] > f->scale[0] && f->scale[0] >= 0 && (f->scale[0] > 0 || !f->is_log)))
-        return command_usage(c, "--scale %g,%g: LO below HI was expected%s", f->scale[0], f->scale[1], f->is_log ? ", and above 0" : "");
+        return command_usage(c, "--scale %g,%g: LO below HI was expected%s", f->scale[0], f->scale[1],
+                             f->is_log ? ", and above 0" : "");
     if (a->is_false) {
         if (!a->output || !(sr_path_has_ending(a->output, ".png") || sr_path_has_ending(a->output, ".svg")))
             return command_usage(c, "--false-colour needs -o with the ending .png or .svg");
         if (a->has_exposure || a->has_tone)
-            return command_usage(c, "--false-colour shows values as they are: --exposure and --tone do not belong to it");
+            return command_usage(c,
+                                 "--false-colour shows values as they are: --exposure and --tone do not belong to it");
     } else if (a->output && !command_is_image_ending(a->output))
         return command_usage(c, "%s: the ending .exr, .png, .pfm or .hdr was expected", a->output);
     if ((a->has_exposure || a->has_tone) && !(a->output && sr_path_has_ending(a->output, ".png")))
@@ -340,7 +357,8 @@ static sr_status prepare(const struct arguments *a, struct sr_image **image, str
 
 static int measure_region(const struct arguments *a)
 {
-    struct image_region region = {(uint32_t)a->region[0], (uint32_t)a->region[1], (uint32_t)a->region[2], (uint32_t)a->region[3]};
+    struct image_region region = {(uint32_t)a->region[0], (uint32_t)a->region[1], (uint32_t)a->region[2],
+                                  (uint32_t)a->region[3]};
     if (!a->has_region) {
         struct sr_error error = {0};
         struct sr_image *image;

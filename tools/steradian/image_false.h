@@ -12,6 +12,7 @@ struct false_colour {
 };
 
 /* Writes a .png or .svg of the picture's luminance, or of its only channel. */
-sr_status image_write_false_colour(const char *path, const struct sr_image *image, const struct false_colour *how, struct sr_error *error);
+sr_status image_write_false_colour(const char *path, const struct sr_image *image, const struct false_colour *how,
+                                   struct sr_error *error);
 
 #endif

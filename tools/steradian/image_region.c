@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* steradian image --region --statistics: a region as a measurement.
  *
- *     several pictures, independent replicates:  L = mean of the pictures' means, u from their spread, nu = pictures - 1
- *     one picture:                               u^2 = SUM u_pixel^2 / n^2,  nu = (SUM u_pixel^2)^2 / SUM u_pixel^4 / nu_pixel
+ *     several pictures, independent replicates:  L = mean of the pictures' means, u from their spread, nu = pictures -
+ * 1 one picture:                               u^2 = SUM u_pixel^2 / n^2,  nu = (SUM u_pixel^2)^2 / SUM u_pixel^4 /
+ * nu_pixel
  *
- * Limits: the second form takes pixels for independent, as those of a render are but for light that splats; the spread of pictures takes in
- * whatever they share. Luminance of one picture adds the channels' errors, for they come from the same samples. */
+ * Limits: the second form takes pixels for independent, as those of a render are but for light that splats; the spread
+ * of pictures takes in whatever they share. Luminance of one picture adds the channels' errors, for they come from the
+ * same samples. */
 #include "image_region.h"
 
 #include <math.h>
@@ -27,14 +29,16 @@ struct source {
     const struct sr_image *image;
     int value[3], error[3]; // channels; -1: there is none
     double y_weights[3];
-    double degrees;         // of a pixel's error
+    double degrees; // of a pixel's error
 };
 
-static sr_status open_source(const char *file, const struct sr_image *image, const struct image_region *region, struct source *s, struct sr_error *error)
+static sr_status open_source(const char *file, const struct sr_image *image, const struct image_region *region,
+                             struct source *s, struct sr_error *error)
 {
     *s = (struct source){.image = image, .degrees = INFINITY};
     if (region->x1 > image->width || region->y1 > image->height)
-        return sr_fail(error, SR_ERROR_INPUT, "%s: the region ends at %u,%u, the picture at %u,%u", file, region->x1, region->y1, image->width, image->height);
+        return sr_fail(error, SR_ERROR_INPUT, "%s: the region ends at %u,%u, the picture at %u,%u", file, region->x1,
+                       region->y1, image->width, image->height);
     if (!sr_image_luminance_weights(image, s->value, s->y_weights))
         return sr_fail(error, SR_ERROR_INPUT, "%s: has no channels R, G, B or Y to be measured", file);
     static const char *const errors[] = {"SE.R", "SE.G", "SE.B"};
@@ -73,7 +77,8 @@ static void measure_form(const struct source *s, const struct image_region *regi
 }
 
 /* The forms of all pictures, one after the other. */
-static sr_status measure_all(const char *const *files, int count, const struct image_region *region, struct form *forms, bool *is_luminous, struct sr_error *error)
+static sr_status measure_all(const char *const *files, int count, const struct image_region *region, struct form *forms,
+                             bool *is_luminous, struct sr_error *error)
 {
     for (int i = 0; i < count && !error->status; ++i) {
         struct sr_image *image;
@@ -99,7 +104,10 @@ static struct sr_quantity quantity_of(const struct form *forms, int count, int k
         return sr_quantity_of_tally(&t, unit);
     }
     const struct form *f = &forms[k];
-    return (struct sr_quantity){.value = f->mean, .u = sqrt(f->variance), .degrees = f->fourth > 0 ? f->variance * f->variance / f->fourth : INFINITY, .unit = unit};
+    return (struct sr_quantity){.value = f->mean,
+                                .u = sqrt(f->variance),
+                                .degrees = f->fourth > 0 ? f->variance * f->variance / f->fourth : INFINITY,
+                                .unit = unit};
 }
 
 static double first_over_second(const double *means)
@@ -135,21 +143,26 @@ int image_print_region(const char *const *files, int count, const struct image_r
         return command_fail("image", &error);
     }
     struct sr_unit unit = is_luminous ? sr_unit_of(SR_KIND_RADIANCE, SR_PHOTOPIC, false) : (struct sr_unit){0};
-    const char *assumption = count > 1 ? "from the spread of independent pictures" : "from the pixels' standard errors, which are taken for independent";
+    const char *assumption = count > 1 ? "from the spread of independent pictures"
+                                       : "from the pixels' standard errors, which are taken for independent";
     json_t *values = json_object();
     if (!as_json)
-        printf("region %u,%u to %u,%u: %u x %u pixels of %s%s\nuncertainty %s\n", region->x0, region->y0, region->x1, region->y1, region->x1 - region->x0,
-               region->y1 - region->y0, files[0], count > 1 ? " and its replicates" : "", assumption);
+        printf("region %u,%u to %u,%u: %u x %u pixels of %s%s\nuncertainty %s\n", region->x0, region->y0, region->x1,
+               region->y1, region->x1 - region->x0, region->y1 - region->y0, files[0],
+               count > 1 ? " and its replicates" : "", assumption);
     for (int k = 0; k < FORMS; ++k) {
         const struct form *f = &forms[k]; // least and most: of the first picture
         struct sr_quantity q = quantity_of(forms, count, k, unit);
         char text[160];
         if (!as_json)
-            printf("%-4s mean %s; least %.6g at %u,%u; most %.6g at %u,%u\n", form_names[k], sr_quantity_text(NULL, &q, text, sizeof text), f->least,
-                   f->at_least[0], f->at_least[1], f->most, f->at_most[0], f->at_most[1]);
-        json_object_set_new(values, form_names[k], json_pack("{s:o, s:o, s:[i,i], s:o, s:[i,i]}", "mean", command_json_measured(&q), "least",
-                                                             command_json_number(f->least), "least_at", (int)f->at_least[0], (int)f->at_least[1], "most",
-                                                             command_json_number(f->most), "most_at", (int)f->at_most[0], (int)f->at_most[1]));
+            printf("%-4s mean %s; least %.6g at %u,%u; most %.6g at %u,%u\n", form_names[k],
+                   sr_quantity_text(NULL, &q, text, sizeof text), f->least, f->at_least[0], f->at_least[1], f->most,
+                   f->at_most[0], f->at_most[1]);
+        json_object_set_new(values, form_names[k],
+                            json_pack("{s:o, s:o, s:[i,i], s:o, s:[i,i]}", "mean", command_json_measured(&q), "least",
+                                      command_json_number(f->least), "least_at", (int)f->at_least[0],
+                                      (int)f->at_least[1], "most", command_json_number(f->most), "most_at",
+                                      (int)f->at_most[0], (int)f->at_most[1]));
     }
     for (int k = R; k <= B && count > 1; k += B - R) {
         struct sr_quantity q = ratio_to_green(forms, count, k);
@@ -161,9 +174,11 @@ int image_print_region(const char *const *files, int count, const struct image_r
     }
     free(forms);
     if (as_json)
-        return command_print_json("image", json_pack("{s:o, s:i, s:{s:[i,i,i,i], s:s}, s:s, s:o}", "file", command_json_text(files[0]), "pictures", count, "region",
-                                                     "corners", (int)region->x0, (int)region->y0, (int)region->x1, (int)region->y1, "unit", "pixel",
-                                                     "uncertainty", assumption, "values", values));
+        return command_print_json("image",
+                                  json_pack("{s:o, s:i, s:{s:[i,i,i,i], s:s}, s:s, s:o}", "file",
+                                            command_json_text(files[0]), "pictures", count, "region", "corners",
+                                            (int)region->x0, (int)region->y0, (int)region->x1, (int)region->y1, "unit",
+                                            "pixel", "uncertainty", assumption, "values", values));
     json_decref(values);
     return 0;
 }

@@ -127,7 +127,7 @@ static int run(int argc, char **argv)
 {
     static const char *const scenes[] = {".pbrt", ".pbrt.gz", ".gltf", ".glb", ".obj", ".stl", ".ply", NULL};
     static const char *const later[] = {".usd", ".usda", ".usdc", ".usdz", ".blend", ".fbx",
-                                        ".dae",  ".xml", ".abc", ".rad",  ".mtlx", NULL};
+                                        ".dae", ".xml",  ".abc",  ".rad",  ".mtlx",  NULL};
     struct info_arguments a = {0};
     int option, index = 0;
     while ((option = command_next_option(argc, argv, ":o:q", long_options, &index)) != -1)
@@ -164,10 +164,11 @@ static int run(int argc, char **argv)
     struct sr_error error = {0};
     struct sr_image *image = NULL;
     if (sr_file_exists(a.path) && has_ending_of(a.path, later))
-        sr_fail(&error, SR_ERROR_INPUT,
-                "%s: this kind of file is not supported yet; scenes are .pbrt or .pbrt.gz, .gltf, .glb, .obj, .stl and .ply, luminaires .ies or .ldt, pictures EXR, "
-                "PNG, JPEG, PFM, HDR, TGA",
-                a.path);
+        sr_fail(
+            &error, SR_ERROR_INPUT,
+            "%s: this kind of file is not supported yet; scenes are .pbrt or .pbrt.gz, .gltf, .glb, .obj, .stl and .ply, luminaires .ies or .ldt, pictures EXR, "
+            "PNG, JPEG, PFM, HDR, TGA",
+            a.path);
     else if (sr_file_exists(a.path) && (sr_path_has_ending(a.path, ".ply") || sr_path_has_ending(a.path, ".ply.gz")))
         sr_fail(&error, SR_ERROR_INPUT,
                 "%s: a mesh alone is not understood; a scene (.pbrt) names it by Shape \"plymesh\" \"string filename\"",
@@ -178,9 +179,10 @@ static int run(int argc, char **argv)
         return code;
     } else if (strstr(error.text, "is no image that can be read")) {
         error = (struct sr_error){0};
-        sr_fail(&error, SR_ERROR_INPUT,
-                "%s: is neither a picture (EXR, PNG, JPEG, PFM, HDR, TGA) nor named like a scene (.pbrt, .pbrt.gz) or a luminaire (.ies, .ldt)",
-                a.path);
+        sr_fail(
+            &error, SR_ERROR_INPUT,
+            "%s: is neither a picture (EXR, PNG, JPEG, PFM, HDR, TGA) nor named like a scene (.pbrt, .pbrt.gz) or a luminaire (.ies, .ldt)",
+            a.path);
     }
     return command_fail("info", &error);
 }

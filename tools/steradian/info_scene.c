@@ -69,20 +69,22 @@ static void print_scene(const char *path, const struct sr_import_result *r, unsi
     printf("  lights       %llu", (unsigned long long)c.lights);
     for (int i = 0; i < lights.n; ++i)
         printf("%s %llu %s", i ? "," : ":", lights.count[i], lights.name[i]);
-    printf("\n  surfaces     %llu triangles, %llu patches, %llu quadrics, %llu curves; %llu instances of %llu objects\n",
-           (unsigned long long)c.triangles, (unsigned long long)c.patches, (unsigned long long)c.quadrics, (unsigned long long)c.curves,
-           (unsigned long long)c.instances, (unsigned long long)c.objects);
+    printf(
+        "\n  surfaces     %llu triangles, %llu patches, %llu quadrics, %llu curves; %llu instances of %llu objects\n",
+        (unsigned long long)c.triangles, (unsigned long long)c.patches, (unsigned long long)c.quadrics,
+        (unsigned long long)c.curves, (unsigned long long)c.instances, (unsigned long long)c.objects);
     if (c.degenerate || c.too_large || c.not_finite)
-        printf("               never met: %llu primitives without area, %llu too large, %llu not finite\n", (unsigned long long)c.degenerate,
-               (unsigned long long)c.too_large, (unsigned long long)c.not_finite);
+        printf("               never met: %llu primitives without area, %llu too large, %llu not finite\n",
+               (unsigned long long)c.degenerate, (unsigned long long)c.too_large, (unsigned long long)c.not_finite);
     if (duplicates)
         printf("               %llu triangles have the corners of another one\n", (unsigned long long)duplicates);
     printf("  materials    %llu\n", (unsigned long long)c.materials);
     if (sr_box_is_empty(box))
         printf("  bounds       nothing there\n");
     else
-        printf("  bounds       (%.9g, %.9g, %.9g) to (%.9g, %.9g, %.9g) m\n", (double)box.lo.x + o[0], (double)box.lo.y + o[1],
-               (double)box.lo.z + o[2], (double)box.hi.x + o[0], (double)box.hi.y + o[1], (double)box.hi.z + o[2]);
+        printf("  bounds       (%.9g, %.9g, %.9g) to (%.9g, %.9g, %.9g) m\n", (double)box.lo.x + o[0],
+               (double)box.lo.y + o[1], (double)box.lo.z + o[2], (double)box.hi.x + o[0], (double)box.hi.y + o[1],
+               (double)box.hi.z + o[2]);
     printf("  memory       geometry %.2f MiB, acceleration %.2f MiB, peak %.1f MiB\n", MiB(c.geometry_B),
            MiB(c.acceleration_B), MiB(sr_peak_memory_B()));
     printf("  time         read %.3f s, built %.3f s\n", r->read_s, c.build_s);
@@ -94,8 +96,8 @@ static json_t *bounds_json(struct sr_box box, const double o[3])
     if (sr_box_is_empty(box))
         return json_null();
     return json_pack("{s:[f,f,f], s:[f,f,f], s:s}", "min", (double)box.lo.x + o[0], (double)box.lo.y + o[1],
-                     (double)box.lo.z + o[2], "max", (double)box.hi.x + o[0], (double)box.hi.y + o[1], (double)box.hi.z + o[2],
-                     "unit", "m");
+                     (double)box.lo.z + o[2], "max", (double)box.hi.x + o[0], (double)box.hi.y + o[1],
+                     (double)box.hi.z + o[2], "unit", "m");
 }
 
 static int print_scene_json(const char *path, const struct sr_import_result *r, unsigned warnings)
@@ -124,11 +126,12 @@ static int print_scene_json(const char *path, const struct sr_import_result *r, 
         (json_int_t)r->seed, "wavelengths", "min", command_json_number((double)SR_LAMBDA_MIN), "max",
         command_json_number((double)SR_LAMBDA_MAX), "unit", "nm", "lights", lights, "counts", "lights",
         (json_int_t)c.lights, "triangles", (json_int_t)c.triangles, "patches", (json_int_t)c.patches, "quadrics",
-        (json_int_t)c.quadrics, "curves", (json_int_t)c.curves, "instances", (json_int_t)c.instances, "objects", (json_int_t)c.objects, "materials",
-        (json_int_t)c.materials, "primitives_without_area", (json_int_t)c.degenerate, "primitives_too_large", (json_int_t)c.too_large,
-        "primitives_not_finite", (json_int_t)c.not_finite, "duplicate_triangles", (json_int_t)sr_scene_count_duplicates(r->scene), "bounds",
-        bounds_json(sr_scene_bounds(r->scene), r->origin), "memory", "geometry_B", (json_int_t)c.geometry_B, "acceleration_B",
-        (json_int_t)c.acceleration_B, "peak_B", (json_int_t)sr_peak_memory_B(), "time", "read_s",
+        (json_int_t)c.quadrics, "curves", (json_int_t)c.curves, "instances", (json_int_t)c.instances, "objects",
+        (json_int_t)c.objects, "materials", (json_int_t)c.materials, "primitives_without_area",
+        (json_int_t)c.degenerate, "primitives_too_large", (json_int_t)c.too_large, "primitives_not_finite",
+        (json_int_t)c.not_finite, "duplicate_triangles", (json_int_t)sr_scene_count_duplicates(r->scene), "bounds",
+        bounds_json(sr_scene_bounds(r->scene), r->origin), "memory", "geometry_B", (json_int_t)c.geometry_B,
+        "acceleration_B", (json_int_t)c.acceleration_B, "peak_B", (json_int_t)sr_peak_memory_B(), "time", "read_s",
         command_json_number(r->read_s), "build_s", command_json_number(c.build_s));
     return command_print_json("info", j);
 }

@@ -25,15 +25,17 @@ static json_t *settings_json(const char *identity)
     return settings;
 }
 
-static void print(const char *path, const struct sr_store_in *in, const struct sr_render_part *part, const char *identity, const struct sr_render_progress_kept *p,
-                  const char *date)
+static void print(const char *path, const struct sr_store_in *in, const struct sr_render_part *part,
+                  const char *identity, const struct sr_render_progress_kept *p, const char *date)
 {
     const char *name;
     size_t size;
     printf("%s: a %s, whole\n", path, sr_store_kind(in));
     if (p)
-        printf("  %.2f %% of the work in %.1f s; written %s\n  %llu paths, %llu rays, %llu shadow rays, %llu samples were not finite\n", 100 * p->share, p->render_s,
-               date, (unsigned long long)p->paths, (unsigned long long)p->rays, (unsigned long long)p->shadow_rays, (unsigned long long)p->dropped);
+        printf(
+            "  %.2f %% of the work in %.1f s; written %s\n  %llu paths, %llu rays, %llu shadow rays, %llu samples were not finite\n",
+            100 * p->share, p->render_s, date, (unsigned long long)p->paths, (unsigned long long)p->rays,
+            (unsigned long long)p->shadow_rays, (unsigned long long)p->dropped);
     struct sr_render_range r;
     for (size_t i = 0; part && sr_render_part_range(part, i, &r); ++i)
         printf("%s %u-%u", i ? "," : "  samples", r.begin, r.end);
@@ -45,17 +47,20 @@ static void print(const char *path, const struct sr_store_in *in, const struct s
     if (identity)
         printf("\n  what makes its bytes\n");
     for (const char *q = identity; q && *q; q += strcspn(q, "\n"), q += *q == '\n')
-        printf("  %-24.*s %.*s\n", (int)strcspn(q, " \n"), q, (int)strcspn(q + strcspn(q, " \n"), "\n"), q + strcspn(q, " \n"));
+        printf("  %-24.*s %.*s\n", (int)strcspn(q, " \n"), q, (int)strcspn(q + strcspn(q, " \n"), "\n"),
+               q + strcspn(q, " \n"));
 }
 
-static int print_json(const char *path, const struct sr_store_in *in, const struct sr_render_part *part, const char *identity,
-                      const struct sr_render_progress_kept *p, const char *date)
+static int print_json(const char *path, const struct sr_store_in *in, const struct sr_render_part *part,
+                      const char *identity, const struct sr_render_progress_kept *p, const char *date)
 {
     json_t *j = json_pack("{s:o, s:s}", "file", command_json_text(path), "kind", sr_store_kind(in));
     if (j && p)
-        json_object_set_new(j, "progress", json_pack("{s:f, s:f, s:s, s:I, s:I, s:I, s:I}", "share", p->share, "render_s", p->render_s, "written", date, "paths",
-                                                     (json_int_t)p->paths, "rays", (json_int_t)p->rays, "shadow_rays", (json_int_t)p->shadow_rays,
-                                                     "dropped_samples", (json_int_t)p->dropped));
+        json_object_set_new(j, "progress",
+                            json_pack("{s:f, s:f, s:s, s:I, s:I, s:I, s:I}", "share", p->share, "render_s", p->render_s,
+                                      "written", date, "paths", (json_int_t)p->paths, "rays", (json_int_t)p->rays,
+                                      "shadow_rays", (json_int_t)p->shadow_rays, "dropped_samples",
+                                      (json_int_t)p->dropped));
     json_t *samples = part ? json_array() : NULL;
     struct sr_render_range r;
     for (size_t i = 0; part && sr_render_part_range(part, i, &r); ++i)

@@ -5,8 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 
-static const struct command *const commands[] = {&command_render, &command_merge, &command_measure, &command_converge, &command_info, &command_compare, &command_image,
-                                                 &command_brdf, &command_glare, &command_validate, &command_formats, &command_convert};
+static const struct command *const commands[] = {
+    &command_render, &command_merge, &command_measure, &command_converge, &command_info,    &command_compare,
+    &command_image,  &command_brdf,  &command_glare,   &command_validate, &command_formats, &command_convert};
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
 static void print_help(FILE *out)

@@ -52,8 +52,27 @@ static const char help[] =
     "  echo \"0 0 0.8  0 0 1\" | steradian measure scenes/meters.pbrt --points\n";
 
 enum {
-    OPT_LIST = 256, OPT_QUANTITY, OPT_SPECTRUM, OPT_FWHM, OPT_BANDPASS, OPT_COLOUR, OPT_ERROR, OPT_TIME, OPT_SAMPLES, OPT_REPLICATES, OPT_ESTIMATOR,
-    OPT_SEED, OPT_THREADS, OPT_SAMPLER, OPT_LAMBDA, OPT_POINTS, OPT_RAYS, OPT_JSON, OPT_UNITS, OPT_BALANCE, OPT_BUDGET,
+    OPT_LIST = 256,
+    OPT_QUANTITY,
+    OPT_SPECTRUM,
+    OPT_FWHM,
+    OPT_BANDPASS,
+    OPT_COLOUR,
+    OPT_ERROR,
+    OPT_TIME,
+    OPT_SAMPLES,
+    OPT_REPLICATES,
+    OPT_ESTIMATOR,
+    OPT_SEED,
+    OPT_THREADS,
+    OPT_SAMPLER,
+    OPT_LAMBDA,
+    OPT_POINTS,
+    OPT_RAYS,
+    OPT_JSON,
+    OPT_UNITS,
+    OPT_BALANCE,
+    OPT_BUDGET,
 };
 
 static const struct option long_options[] = {
@@ -108,8 +127,8 @@ static bool take_systems(struct measure_arguments *a, const char *text)
             for (int i = 0; i < SR_SYSTEM_COUNT; ++i)
                 names[i] = sr_system_name((enum sr_system)i);
             const char *nearest = command_nearest(name, names, sizeof *names, SR_SYSTEM_COUNT);
-            command_usage(&command_measure, "--quantity %s: there is no \"%s\"%s%s%s", text, name, nearest ? "; did you mean \"" : "", nearest ? nearest : "",
-                          nearest ? "\"?" : "");
+            command_usage(&command_measure, "--quantity %s: there is no \"%s\"%s%s%s", text, name,
+                          nearest ? "; did you mean \"" : "", nearest ? nearest : "", nearest ? "\"?" : "");
             return false;
         }
         is_first = false;
@@ -180,7 +199,8 @@ static bool take_value(struct measure_arguments *a, int option, const char *name
 
 static int parse(int argc, char **argv, struct measure_arguments *a)
 {
-    *a = (struct measure_arguments){.lambda = {(double)SR_LAMBDA_MIN, (double)SR_LAMBDA_MAX}, .fwhm = NAN, .settings.system = SR_PHOTOPIC};
+    *a = (struct measure_arguments){
+        .lambda = {(double)SR_LAMBDA_MIN, (double)SR_LAMBDA_MAX}, .fwhm = NAN, .settings.system = SR_PHOTOPIC};
     a->systems[SR_PHOTOPIC] = true;
     int option, index = 0;
     while ((option = command_next_option(argc, argv, ":m:o:q", long_options, &index)) != -1) {
@@ -229,15 +249,22 @@ static int parse(int argc, char **argv, struct measure_arguments *a)
     if (a->sampler && strcmp(a->sampler, "sobol") != 0 && strcmp(a->sampler, "independent") != 0)
         return command_usage(&command_measure, "--sampler %s: sobol or independent was expected", a->sampler);
     if (optind + 1 != argc)
-        return command_usage(&command_measure, optind == argc ? "a scene file was expected" : "one scene file was expected, there are %d", argc - optind);
+        return command_usage(&command_measure,
+                             optind == argc ? "a scene file was expected" : "one scene file was expected, there are %d",
+                             argc - optind);
     a->scene = argv[optind];
-    if (a->budget && (a->input != MEASURE_METERS || a->outfile || a->balance || a->has_spectrum || a->colour || a->settings.error > 0 || a->settings.time_s > 0 ||
-                      strcmp(a->scene, "-") == 0))
-        return command_usage(&command_measure, "--budget measures the meters of a scene file by --samples: without --points, --rays, --balance, --spectrum, --colour, --error, --time, -o");
+    if (a->budget && (a->input != MEASURE_METERS || a->outfile || a->balance || a->has_spectrum || a->colour ||
+                      a->settings.error > 0 || a->settings.time_s > 0 || strcmp(a->scene, "-") == 0))
+        return command_usage(
+            &command_measure,
+            "--budget measures the meters of a scene file by --samples: without --points, --rays, --balance, --spectrum, --colour, --error, --time, -o");
     if (a->input != MEASURE_METERS && strcmp(a->scene, "-") == 0)
-        return command_usage(&command_measure, "standard input cannot hold the scene and what is to be measured: expected a scene file");
+        return command_usage(&command_measure,
+                             "standard input cannot hold the scene and what is to be measured: expected a scene file");
     if (a->input != MEASURE_METERS && (a->meter_count || a->outfile || a->has_spectrum || a->colour || a->list))
-        return command_usage(&command_measure, "--points and --rays print one reading a line: --meter, --list, --spectrum, --colour and -o do not go with them");
+        return command_usage(
+            &command_measure,
+            "--points and --rays print one reading a line: --meter, --list, --spectrum, --colour and -o do not go with them");
     return 0;
 }
 
@@ -255,7 +282,8 @@ bool measure_wants_colour(const struct measure_arguments *a, const struct sr_met
     return a->colour || sr_meter_common(meter)->reading == SR_READ_COLOUR;
 }
 
-sr_status measure_spectrometer(const struct measure_arguments *a, const struct sr_meter *meter, struct sr_spectrometer *s, struct sr_error *error)
+sr_status measure_spectrometer(const struct measure_arguments *a, const struct sr_meter *meter,
+                               struct sr_spectrometer *s, struct sr_error *error)
 {
     const struct sr_meter_common *c = sr_meter_common(meter);
     const float *l = c->lambda.data;
@@ -265,8 +293,9 @@ sr_status measure_spectrometer(const struct measure_arguments *a, const struct s
     if (c->reading != SR_READ_SPECTRUM)
         return SR_OK;
     bool is_given = c->lambda.count == 3;
-    return sr_spectrometer_prepare(is_given ? (double)l[0] : 380, is_given ? (double)l[1] : 10, is_given ? (double)l[2] : 780, (double)c->fwhm,
-                                   (enum sr_meter_bandpass)c->bandpass, s, error);
+    return sr_spectrometer_prepare(is_given ? (double)l[0] : 380, is_given ? (double)l[1] : 10,
+                                   is_given ? (double)l[2] : 780, (double)c->fwhm, (enum sr_meter_bandpass)c->bandpass,
+                                   s, error);
 }
 
 /* ---- all together ---- */
@@ -274,9 +303,12 @@ sr_status measure_spectrometer(const struct measure_arguments *a, const struct s
 struct sr_render_job measure_job(const struct measure_arguments *a, const struct sr_import_result *scene)
 {
     return (struct sr_render_job){
-        .scene = scene->scene, .origin = {scene->origin[0], scene->origin[1], scene->origin[2]},
+        .scene = scene->scene,
+        .origin = {scene->origin[0], scene->origin[1], scene->origin[2]},
         .integrator = scene->integrator,
-        .sampler = !a->sampler ? scene->sampler : strcmp(a->sampler, "sobol") == 0 ? SR_SAMPLER_SOBOL : SR_SAMPLER_INDEPENDENT,
+        .sampler = !a->sampler                        ? scene->sampler
+                   : strcmp(a->sampler, "sobol") == 0 ? SR_SAMPLER_SOBOL
+                                                      : SR_SAMPLER_INDEPENDENT,
         .seed = a->has_seed ? (uint32_t)a->seed : scene->seed,
         .lambda = {(float)a->lambda[0], (float)a->lambda[1]},
         .jitter_lambda = true,
@@ -292,8 +324,9 @@ static int list_meters(const struct measure_arguments *a, const struct sr_import
         const struct sr_meter *m = &scene->meters[i];
         const char *name = sr_meter_common(m)->name;
         if (a->json)
-            json_array_append_new(list, json_pack("{s:o, s:s, s:s, s:s}", "name", command_json_text(name), "kind", m->model->name, "quantity", m->model->what,
-                                                  "definition", m->model->law));
+            json_array_append_new(list,
+                                  json_pack("{s:o, s:s, s:s, s:s}", "name", command_json_text(name), "kind",
+                                            m->model->name, "quantity", m->model->what, "definition", m->model->law));
         else
             printf("%-16s %s: %s\n", name, m->model->what, m->model->law);
     }
@@ -318,9 +351,10 @@ static int choose(const struct measure_arguments *a, const struct sr_import_resu
                 is_known = chosen[i] = true;
         }
         if (!is_known) {
-            const char *nearest = names ? command_nearest(a->meters[k], names, sizeof *names, scene->meter_count) : NULL;
-            int code = command_usage(&command_measure, "%s has no meter \"%s\"%s%s%s", a->scene, a->meters[k], nearest ? "; did you mean \"" : "",
-                                     nearest ? nearest : "", nearest ? "\"?" : "");
+            const char *nearest =
+                names ? command_nearest(a->meters[k], names, sizeof *names, scene->meter_count) : NULL;
+            int code = command_usage(&command_measure, "%s has no meter \"%s\"%s%s%s", a->scene, a->meters[k],
+                                     nearest ? "; did you mean \"" : "", nearest ? nearest : "", nearest ? "\"?" : "");
             free(names);
             return code;
         }
@@ -331,15 +365,18 @@ static int choose(const struct measure_arguments *a, const struct sr_import_resu
 
 static json_t *settings_json(const struct measure_arguments *a, const struct sr_render_job *job, enum sr_units units)
 {
-    return json_pack("{s:s, s:s, s:s, s:I, s:I, s:o, s:f, s:{s:f, s:f, s:s}}", "units", units == SR_UNITS_SI ? "si" : "photometric", "estimator", sr_integrator_label(&job->integrator), "sampler",
-                     job->sampler == SR_SAMPLER_SOBOL ? "sobol" : "independent", "seed", (json_int_t)job->seed, "replicates",
+    return json_pack("{s:s, s:s, s:s, s:I, s:I, s:o, s:f, s:{s:f, s:f, s:s}}", "units",
+                     units == SR_UNITS_SI ? "si" : "photometric", "estimator", sr_integrator_label(&job->integrator),
+                     "sampler", job->sampler == SR_SAMPLER_SOBOL ? "sobol" : "independent", "seed",
+                     (json_int_t)job->seed, "replicates",
                      (json_int_t)(a->settings.replicates ? a->settings.replicates : 16), "target",
-                     a->settings.error > 0 ? json_real(a->settings.error) : json_null(), "level", 0.95, "wavelengths", "min", (double)job->lambda.lo, "max",
-                     (double)job->lambda.hi, "unit", "nm");
+                     a->settings.error > 0 ? json_real(a->settings.error) : json_null(), "level", 0.95, "wavelengths",
+                     "min", (double)job->lambda.lo, "max", (double)job->lambda.hi, "unit", "nm");
 }
 
 /* The map's file, and what there is to say about it. */
-static sr_status write_map(const struct measure_arguments *a, const struct sr_render_job *job, const struct sr_meter *meter, struct sr_error *error)
+static sr_status write_map(const struct measure_arguments *a, const struct sr_render_job *job,
+                           const struct sr_meter *meter, struct sr_error *error)
 {
     struct sr_image *image;
     struct sr_measure_settings s = a->settings;
@@ -352,7 +389,8 @@ static sr_status write_map(const struct measure_arguments *a, const struct sr_re
         fprintf(stderr, "warning: map \"%s\": %s\n", sr_meter_common(meter)->name, blind);
     struct sr_image_write_options options = {.tone = {.op = SR_TONE_LINEAR, .is_auto = true}};
     if (sr_image_write(a->outfile, image, &options, error) == SR_OK && !a->quiet)
-        fprintf(stderr, "note: %u x %u cells of \"%s\" written to %s\n", image->width, image->height, sr_meter_common(meter)->name, a->outfile);
+        fprintf(stderr, "note: %u x %u cells of \"%s\" written to %s\n", image->width, image->height,
+                sr_meter_common(meter)->name, a->outfile);
     sr_image_free(image);
     return error->status ? error->status : status;
 }
@@ -370,7 +408,9 @@ static int measure_scene(const struct measure_arguments *a, const struct sr_impo
         maps += chosen[i] && scene->meters[i].model->raster;
     }
     if (a->outfile && maps != 1)
-        return command_usage(&command_measure, "-o writes one map or intensity distribution, and %d are asked for: choose with --meter", maps);
+        return command_usage(&command_measure,
+                             "-o writes one map or intensity distribution, and %d are asked for: choose with --meter",
+                             maps);
     json_t *list = json_array();
     for (uint32_t i = 0; i < scene->meter_count && is_complete && !error.status; ++i) {
         const struct sr_meter *meter = &scene->meters[i];
@@ -405,8 +445,10 @@ static int measure_scene(const struct measure_arguments *a, const struct sr_impo
     char hash[17];
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)scene->hash);
     if (a->json)
-        code = command_print_json("measure", json_pack("{s:s, s:o, s:s, s:b, s:o, s:o}", "version", SR_VERSION, "scene", command_json_text(a->scene), "scene_hash",
-                                                       hash, "complete", is_complete, "settings", settings_json(a, &job, scene->units), "meters", list));
+        code = command_print_json("measure",
+                                  json_pack("{s:s, s:o, s:s, s:b, s:o, s:o}", "version", SR_VERSION, "scene",
+                                            command_json_text(a->scene), "scene_hash", hash, "complete", is_complete,
+                                            "settings", settings_json(a, &job, scene->units), "meters", list));
     else
         json_decref(list);
     if (!is_complete || atomic_load(&render_interrupted)) {
@@ -447,9 +489,11 @@ static int run(int argc, char **argv)
         render_catch_interrupts();
         code = measure_balance(&a, &job);
     } else if (scene.meter_count == 0) {
-        fprintf(stderr, "steradian measure: error: %s: the scene has no meters; a line such as\n"
-                        "  #@ Meter \"irradiance\" \"string name\" \"desk\" \"point3 p\" [0 0 0.8] \"normal n\" [0 0 1]\n"
-                        "in its world makes one, and --points and --rays need none\n", a.scene);
+        fprintf(stderr,
+                "steradian measure: error: %s: the scene has no meters; a line such as\n"
+                "  #@ Meter \"irradiance\" \"string name\" \"desk\" \"point3 p\" [0 0 0.8] \"normal n\" [0 0 1]\n"
+                "in its world makes one, and --points and --rays need none\n",
+                a.scene);
         code = SR_ERROR_INPUT;
     } else if (a.list) {
         code = list_meters(&a, &scene);

@@ -18,10 +18,10 @@ struct measure_arguments {
     enum measure_input input;
     struct sr_import_options import;
     struct sr_measure_settings settings;
-    bool systems[SR_SYSTEM_COUNT]; // those to print
-    double lambda[2];              // [nm]
+    bool systems[SR_SYSTEM_COUNT];       // those to print
+    double lambda[2];                    // [nm]
     struct sr_spectrometer spectrometer; // asked for on the command line
-    double spectrum[3], fwhm;      // [nm]
+    double spectrum[3], fwhm;            // [nm]
     enum sr_meter_bandpass bandpass;
     bool has_spectrum, colour, has_seed, list, balance, budget, json, quiet;
     uint64_t seed, threads;
@@ -32,15 +32,20 @@ struct measure_arguments {
 const char *measure_symbol(const struct sr_meter *meter, enum sr_system system, char text[64]);
 /* What the meter's detector shows: of the file, or as the command line says. */
 bool measure_wants_colour(const struct measure_arguments *a, const struct sr_meter *meter);
-sr_status measure_spectrometer(const struct measure_arguments *a, const struct sr_meter *meter, struct sr_spectrometer *s, struct sr_error *error);
+sr_status measure_spectrometer(const struct measure_arguments *a, const struct sr_meter *meter,
+                               struct sr_spectrometer *s, struct sr_error *error);
 
 /* measure_print.c */
-void measure_print(const struct measure_arguments *a, const struct sr_meter *meter, const struct sr_spectrometer *s, const struct sr_measurement *m, int width);
-json_t *measure_json(const struct measure_arguments *a, const struct sr_meter *meter, const struct sr_spectrometer *s, const struct sr_measurement *m);
+void measure_print(const struct measure_arguments *a, const struct sr_meter *meter, const struct sr_spectrometer *s,
+                   const struct sr_measurement *m, int width);
+json_t *measure_json(const struct measure_arguments *a, const struct sr_meter *meter, const struct sr_spectrometer *s,
+                     const struct sr_measurement *m);
 
-/* measure_adjoint.c: what particles from the lights tell; an exit code, and the table of a meter of the far field to a->outfile */
+/* measure_adjoint.c: what particles from the lights tell; an exit code, and the table of a meter of the far field to
+ * a->outfile */
 int measure_balance(const struct measure_arguments *a, const struct sr_render_job *job);
-sr_status measure_write_intensity(const struct measure_arguments *a, const struct sr_render_job *job, const struct sr_meter *meter, struct sr_error *error);
+sr_status measure_write_intensity(const struct measure_arguments *a, const struct sr_render_job *job,
+                                  const struct sr_meter *meter, struct sr_error *error);
 
 /* measure_budget.c: what contributes to the uncertainty of each chosen meter; the exit code */
 int measure_budget(const struct measure_arguments *a, const struct sr_import_result *scene, const bool *chosen);

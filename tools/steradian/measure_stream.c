@@ -24,16 +24,17 @@ static bool read_line(const char *line, double v[6], bool *is_empty)
     return *is_empty || *p == 0 || *p == '#';
 }
 
-static void print_line(const struct measure_arguments *a, const struct sr_measurement *m, uint64_t number, const double v[6])
+static void print_line(const struct measure_arguments *a, const struct sr_measurement *m, uint64_t number,
+                       const double v[6])
 {
     if (a->json) {
         json_t *readings = json_object();
         for (int i = 0; i < SR_SYSTEM_COUNT; ++i)
             if (a->systems[i])
                 json_object_set_new(readings, sr_system_name((enum sr_system)i), command_json_measured(&m->value[i]));
-        json_t *j = json_pack("{s:I, s:[f,f,f], s:[f,f,f], s:o, s:o}", "line", (json_int_t)number, "p_m", v[0], v[1], v[2],
-                              a->input == MEASURE_RAYS ? "direction" : "normal", v[3], v[4], v[5], "readings", readings, "remark",
-                              m->remark_count ? command_json_text(m->remarks[0]) : json_null());
+        json_t *j = json_pack("{s:I, s:[f,f,f], s:[f,f,f], s:o, s:o}", "line", (json_int_t)number, "p_m", v[0], v[1],
+                              v[2], a->input == MEASURE_RAYS ? "direction" : "normal", v[3], v[4], v[5], "readings",
+                              readings, "remark", m->remark_count ? command_json_text(m->remarks[0]) : json_null());
         json_dumpf(j, stdout, JSON_COMPACT | JSON_REAL_PRECISION(9));
         json_decref(j);
     } else {
@@ -51,8 +52,8 @@ static void print_line(const struct measure_arguments *a, const struct sr_measur
 static int bad_line(uint64_t number, const struct measure_arguments *a, const char *why)
 {
     struct sr_error error = {0};
-    sr_fail(&error, SR_ERROR_INPUT, "standard input:%llu: %s: expected six numbers, %s", (unsigned long long)number, why,
-            a->input == MEASURE_RAYS ? "x y z dx dy dz" : "x y z nx ny nz");
+    sr_fail(&error, SR_ERROR_INPUT, "standard input:%llu: %s: expected six numbers, %s", (unsigned long long)number,
+            why, a->input == MEASURE_RAYS ? "x y z dx dy dz" : "x y z nx ny nz");
     return command_fail("measure", &error);
 }
 
@@ -74,7 +75,8 @@ int measure_stream(const struct measure_arguments *a, const struct sr_render_job
         sr_vec3 p = sr_render_place(job, v), d = {(float)v[3], (float)v[4], (float)v[5]};
         struct sr_arena arena = {0};
         struct sr_error error = {0};
-        struct sr_meter meter = a->input == MEASURE_RAYS ? sr_meter_radiance_along(&arena, p, d, 0) : sr_meter_irradiance_at(&arena, p, d);
+        struct sr_meter meter =
+            a->input == MEASURE_RAYS ? sr_meter_radiance_along(&arena, p, d, 0) : sr_meter_irradiance_at(&arena, p, d);
         struct sr_measurement m;
         s.stream = (uint32_t)number;
         if (!meter.model) {

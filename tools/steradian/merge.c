@@ -32,8 +32,12 @@ enum { OPT_ALLOW = 256, OPT_EXPOSURE, OPT_JSON, MAX_OUTPUTS = 8 };
 static const char part_ending[] = ".srp";
 
 static const struct option long_options[] = {
-    {"outfile", required_argument, NULL, 'o'}, {"allow-missing", no_argument, NULL, OPT_ALLOW}, {"exposure", required_argument, NULL, OPT_EXPOSURE},
-    {"json", no_argument, NULL, OPT_JSON},     {"quiet", no_argument, NULL, 'q'},               {NULL, 0, NULL, 0},
+    {"outfile", required_argument, NULL, 'o'},
+    {"allow-missing", no_argument, NULL, OPT_ALLOW},
+    {"exposure", required_argument, NULL, OPT_EXPOSURE},
+    {"json", no_argument, NULL, OPT_JSON},
+    {"quiet", no_argument, NULL, 'q'},
+    {NULL, 0, NULL, 0},
 };
 
 struct arguments {
@@ -64,7 +68,8 @@ static int parse(int argc, char **argv, struct arguments *a)
             if (a->output_count == MAX_OUTPUTS)
                 return command_usage(&command_merge, "at most %d output files", MAX_OUTPUTS);
             if (!command_is_image_ending(optarg) && !sr_path_has_ending(optarg, part_ending))
-                return command_usage(&command_merge, "%s: the ending .exr, .png, .pfm, .hdr or .srp was expected", optarg);
+                return command_usage(&command_merge, "%s: the ending .exr, .png, .pfm, .hdr or .srp was expected",
+                                     optarg);
             a->wants_picture |= command_is_image_ending(optarg);
             a->outputs[a->output_count++] = optarg;
             break;
@@ -88,7 +93,9 @@ static int parse(int argc, char **argv, struct arguments *a)
     a->parts = (const char *const *)&argv[optind];
     a->part_count = argc - optind;
     if (a->part_count == 0)
-        return command_usage(&command_merge, "parts of a picture were expected: files that 'steradian render --sample-range' has written");
+        return command_usage(
+            &command_merge,
+            "parts of a picture were expected: files that 'steradian render --sample-range' has written");
     if (a->output_count == 0)
         return command_usage(&command_merge, "-o FILE was expected: where does the picture go?");
     return 0;
@@ -96,27 +103,30 @@ static int parse(int argc, char **argv, struct arguments *a)
 
 /* ---- parts, one after the other ---- */
 
-static sr_status check_identity(const struct merging *m, const char *file, const struct sr_render_part *part, struct sr_error *error)
+static sr_status check_identity(const struct merging *m, const char *file, const struct sr_render_part *part,
+                                struct sr_error *error)
 {
     struct sr_render_difference d;
     if (!sr_render_identity_differs(sr_render_part_identity(part), sr_render_part_identity(m->all), &d))
         return SR_OK;
-    return sr_fail(error, SR_ERROR_INPUT, "%s: is of another picture than %s: its %s is \"%s\", and there it is \"%s\"", file, m->a.parts[0], d.key, d.theirs,
-                   d.ours);
+    return sr_fail(error, SR_ERROR_INPUT, "%s: is of another picture than %s: its %s is \"%s\", and there it is \"%s\"",
+                   file, m->a.parts[0], d.key, d.theirs, d.ours);
 }
 
-static sr_status check_overlap(const struct merging *m, const char *file, struct sr_render_range r, struct sr_error *error)
+static sr_status check_overlap(const struct merging *m, const char *file, struct sr_render_range r,
+                               struct sr_error *error)
 {
     const struct piece *pieces = m->pieces.data;
     for (size_t i = 0; i < m->pieces.count; ++i)
         if (r.begin < pieces[i].range.end && pieces[i].range.begin < r.end)
-            return sr_fail(error, SR_ERROR_INPUT, "%s: has samples %u-%u, of which %s has %u-%u already", file, r.begin, r.end, pieces[i].file,
-                           pieces[i].range.begin, pieces[i].range.end);
+            return sr_fail(error, SR_ERROR_INPUT, "%s: has samples %u-%u, of which %s has %u-%u already", file, r.begin,
+                           r.end, pieces[i].file, pieces[i].range.begin, pieces[i].range.end);
     return SR_OK;
 }
 
 /* Notes where the samples of a part come from. */
-static sr_status add_pieces(struct merging *m, const char *file, const struct sr_render_part *part, struct sr_error *error)
+static sr_status add_pieces(struct merging *m, const char *file, const struct sr_render_part *part,
+                            struct sr_error *error)
 {
     struct sr_render_range r;
     for (size_t i = 0; sr_render_part_range(part, i, &r); ++i) {
@@ -176,8 +186,8 @@ static int tell_missing(const struct merging *m)
     fprintf(stderr, "steradian merge: samples are missing:");
     for (; missing(m->all, i, &r) && i < MOST; ++i)
         fprintf(stderr, "%s %u-%u", i ? "," : "", r.begin, r.end);
-    fprintf(stderr, "%s of 0-%u\nRender them with --sample-range A-B, or look at what there is with --allow-missing.\n", missing(m->all, i, &r) ? " and others" : "",
-            sr_render_part_spp(m->all));
+    fprintf(stderr, "%s of 0-%u\nRender them with --sample-range A-B, or look at what there is with --allow-missing.\n",
+            missing(m->all, i, &r) ? " and others" : "", sr_render_part_spp(m->all));
     return SR_ERROR_CHECK;
 }
 
@@ -193,7 +203,8 @@ static int print_json(const struct merging *m, const struct sr_film *film)
         json_array_append_new(outputs, command_json_text(m->a.outputs[i]));
     const struct piece *pieces = m->pieces.data;
     for (size_t i = 0; i < m->pieces.count; ++i)
-        json_array_append_new(parts, json_pack("{s:o, s:o}", "file", command_json_text(pieces[i].file), "samples", range_json(pieces[i].range)));
+        json_array_append_new(parts, json_pack("{s:o, s:o}", "file", command_json_text(pieces[i].file), "samples",
+                                               range_json(pieces[i].range)));
     struct sr_render_range r;
     for (size_t i = 0; missing(m->all, i, &r); ++i)
         json_array_append_new(lacks, range_json(r));
@@ -206,11 +217,14 @@ static int print_json(const struct merging *m, const struct sr_film *film)
     }
     struct sr_quantity L = picture_mean_luminance(film);
     const struct sr_render_report *report = sr_render_part_report(m->all);
-    return command_print_json("merge", json_pack("{s:s, s:o, s:b, s:o, s:o, s:I, s:o, s:o, s:{s:I, s:I, s:I, s:I, s:I}}", "version", SR_VERSION, "outputs", outputs,
-                                                 "complete", sr_render_part_is_complete(m->all), "parts", parts, "missing", lacks, "spp",
-                                                 (json_int_t)sr_render_part_spp(m->all), "mean_luminance", command_json_measured(&L), "identity", identity, "counts",
-                                                 "paths", (json_int_t)report->paths, "rays", (json_int_t)report->rays, "shadow_rays", (json_int_t)report->shadow_rays,
-                                                 "vertices", (json_int_t)report->vertices, "dropped_samples", (json_int_t)report->dropped));
+    return command_print_json(
+        "merge",
+        json_pack("{s:s, s:o, s:b, s:o, s:o, s:I, s:o, s:o, s:{s:I, s:I, s:I, s:I, s:I}}", "version", SR_VERSION,
+                  "outputs", outputs, "complete", sr_render_part_is_complete(m->all), "parts", parts, "missing", lacks,
+                  "spp", (json_int_t)sr_render_part_spp(m->all), "mean_luminance", command_json_measured(&L),
+                  "identity", identity, "counts", "paths", (json_int_t)report->paths, "rays", (json_int_t)report->rays,
+                  "shadow_rays", (json_int_t)report->shadow_rays, "vertices", (json_int_t)report->vertices,
+                  "dropped_samples", (json_int_t)report->dropped));
 }
 
 static void print_summary(const struct merging *m, const struct sr_film *film)
@@ -220,8 +234,10 @@ static void print_summary(const struct merging *m, const struct sr_film *film)
     char text[128];
     fprintf(stderr, "mean luminance %s%s\n", sr_quantity_text("L_v", &L, text, sizeof text),
             sr_render_part_is_replicated(m->all) || !isfinite(L.u) ? "" : ", conservative");
-    fprintf(stderr, "%d part%s: %u x %u pixels, %.6g of %u samples each; %llu paths, %llu rays\n", m->a.part_count, m->a.part_count > 1 ? "s" : "", film->width, film->height,
-            picture_mean_spp(film), sr_render_part_spp(m->all), (unsigned long long)report->paths, (unsigned long long)(report->rays + report->shadow_rays));
+    fprintf(stderr, "%d part%s: %u x %u pixels, %.6g of %u samples each; %llu paths, %llu rays\n", m->a.part_count,
+            m->a.part_count > 1 ? "s" : "", film->width, film->height, picture_mean_spp(film),
+            sr_render_part_spp(m->all), (unsigned long long)report->paths,
+            (unsigned long long)(report->rays + report->shadow_rays));
 }
 
 static int write_all(const struct merging *m, struct sr_error *error)
@@ -235,14 +251,21 @@ static int write_all(const struct merging *m, struct sr_error *error)
     bool is_complete = sr_render_part_is_complete(m->all);
     if (a->wants_picture && !is_complete && !a->allows_missing)
         return tell_missing(m);
-    struct picture p = {.film = sr_render_part_film(m->all), .about = about, .is_replicated = sr_render_part_is_replicated(m->all), .is_complete = is_complete,
-                        .has_exposure = a->has_exposure, .exposure_EV = a->exposure_EV};
+    struct picture p = {.film = sr_render_part_film(m->all),
+                        .about = about,
+                        .is_replicated = sr_render_part_is_replicated(m->all),
+                        .is_complete = is_complete,
+                        .has_exposure = a->has_exposure,
+                        .exposure_EV = a->exposure_EV};
     if (a->wants_picture && picture_write(&p, a->outputs, a->output_count, error) != SR_OK)
         return command_fail("merge", error);
     const struct sr_render_report *report = sr_render_part_report(m->all);
     if (report->dropped)
-        fprintf(stderr, "warning: %llu samples were not finite and count as zero; the first is of pixel %u,%u, sample %u, replicate %u\n",
-                (unsigned long long)report->dropped, report->dropped_x, report->dropped_y, report->dropped_sample, report->dropped_replicate);
+        fprintf(
+            stderr,
+            "warning: %llu samples were not finite and count as zero; the first is of pixel %u,%u, sample %u, replicate %u\n",
+            (unsigned long long)report->dropped, report->dropped_x, report->dropped_y, report->dropped_sample,
+            report->dropped_replicate);
     if (!a->quiet)
         print_summary(m, p.film);
     return a->json ? print_json(m, p.film) : 0;

@@ -131,8 +131,9 @@ json_t *command_json_measured(const struct sr_quantity *q)
 {
     char unit[96];
     double U = sr_quantity_expanded(q, 0.95), k = U / q->u;
-    json_t *j = json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:f}", "unit", command_json_text(sr_unit_text(q->unit, unit, sizeof unit)),
-                          "value", command_json_number(q->value), "standard_uncertainty", command_json_number(q->u),
+    json_t *j = json_pack("{s:o, s:o, s:o, s:o, s:o, s:o, s:f}", "unit",
+                          command_json_text(sr_unit_text(q->unit, unit, sizeof unit)), "value",
+                          command_json_number(q->value), "standard_uncertainty", command_json_number(q->u),
                           "degrees_of_freedom", command_json_number(q->degrees), "coverage_factor",
                           command_json_number(k), "expanded_uncertainty", command_json_number(U), "level", 0.95);
     if (j && q->upper > 0)

@@ -7,7 +7,8 @@
 #include <string.h>
 #include <time.h>
 
-/* "fisheye; mapping equisolid; fov 180": words and numbers of the camera, so that others know where each pixel looks. */
+/* "fisheye; mapping equisolid; fov 180": words and numbers of the camera, so that others know where each pixel looks.
+ */
 static void camera_text(const struct sr_sensor *sensor, char *text, size_t size)
 {
     int n = snprintf(text, size, "%s", sensor->model->name);
@@ -28,11 +29,12 @@ char *picture_about(struct sr_arena *arena, const struct sr_render_job *job, uin
 {
     char camera[400];
     camera_text(&job->sensor, camera, sizeof camera);
-    return sr_arena_printf(arena,
-                           "steradian.version %s\nsteradian.sceneHash %016llx\nsteradian.seed %u\nsteradian.replicates %u\n"
-                           "steradian.integrator %s\nsteradian.camera %s\nsteradian.lambda %g..%g nm\nsteradian.units %s\n",
-                           SR_VERSION, (unsigned long long)scene_hash, job->seed, job->replicates, sr_integrator_label(&job->integrator), camera,
-                           (double)job->lambda.lo, (double)job->lambda.hi, units == SR_UNITS_SI ? "si" : "photometric");
+    return sr_arena_printf(
+        arena,
+        "steradian.version %s\nsteradian.sceneHash %016llx\nsteradian.seed %u\nsteradian.replicates %u\n"
+        "steradian.integrator %s\nsteradian.camera %s\nsteradian.lambda %g..%g nm\nsteradian.units %s\n",
+        SR_VERSION, (unsigned long long)scene_hash, job->seed, job->replicates, sr_integrator_label(&job->integrator),
+        camera, (double)job->lambda.lo, (double)job->lambda.hi, units == SR_UNITS_SI ? "si" : "photometric");
 }
 
 static void describe(struct sr_image *image, const struct picture *p, struct sr_error *error)
@@ -65,7 +67,8 @@ sr_status picture_write(const struct picture *p, const char *const *names, int c
     if (sr_render_image(p->film, true, p->is_replicated, &image, error) != SR_OK)
         return error->status;
     describe(image, p, error);
-    struct sr_image_write_options options = {.tone = {.op = SR_TONE_LINEAR, .is_auto = !p->has_exposure, .exposure_EV = (float)p->exposure_EV}};
+    struct sr_image_write_options options = {
+        .tone = {.op = SR_TONE_LINEAR, .is_auto = !p->has_exposure, .exposure_EV = (float)p->exposure_EV}};
     for (int i = 0; i < count; ++i)
         if (command_is_image_ending(names[i]))
             sr_image_write(names[i], image, &options, error);

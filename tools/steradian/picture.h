@@ -10,12 +10,12 @@
 
 struct picture {
     const struct sr_film *film;
-    const char *about;   // of picture_about
-    bool is_replicated;  // error bars are each pixel's own
+    const char *about;  // of picture_about
+    bool is_replicated; // error bars are each pixel's own
     bool is_complete;
     bool has_exposure;
-    double exposure_EV;  // of a PNG
-    bool has_stamp;      // date and time go into the file, whose bytes then differ from run to run
+    double exposure_EV; // of a PNG
+    bool has_stamp;     // date and time go into the file, whose bytes then differ from run to run
     double elapsed_s;
 };
 /* What is known of a picture beforehand, as lines "attribute value". NULL: no memory. */

@@ -84,9 +84,9 @@ static int print_sample(const struct render_arguments *a, const struct sr_render
            (unsigned long long)worker.shadow_rays, (unsigned long long)worker.vertices);
     const double *o = job->origin;
     if (first.is_hit)
-        printf("first surface: p %.9g %.9g %.9g m, n %.6g %.6g %.6g, object %u, material %u\n", (double)first.p.x + o[0],
-               (double)first.p.y + o[1], (double)first.p.z + o[2], (double)first.n.x, (double)first.n.y, (double)first.n.z,
-               first.object, first.material);
+        printf("first surface: p %.9g %.9g %.9g m, n %.6g %.6g %.6g, object %u, material %u\n",
+               (double)first.p.x + o[0], (double)first.p.y + o[1], (double)first.p.z + o[2], (double)first.n.x,
+               (double)first.n.y, (double)first.n.z, first.object, first.material);
     return 0;
 }
 
@@ -102,13 +102,16 @@ static bool is_helper(void)
 
 enum { MOST_SPP = 1 << 16 }; // where --error or --time says how many are needed
 
-/* The side of a work tile [pixel]: small where a pixel takes many samples, so that a unit of work ends within seconds and
- * progress, partial pictures and Ctrl-C need not wait. The bytes of the picture do not depend on it. */
+/* The side of a work tile [pixel]: small where a pixel takes many samples, so that a unit of work ends within seconds
+ * and progress, partial pictures and Ctrl-C need not wait. The bytes of the picture do not depend on it. */
 static int choose_tile(const struct render_arguments *a, const struct sr_import_result *scene)
 {
     // where paths from the lights bring light to the picture, a unit must end before a checkpoint can be written;
     // processes that render together are dealt whole tiles, with all their blocks
-    double unit_samples = scene->integrator.model->splats ? 1 << 15 : 1 << 17, blocks = render_crew.hooks ? 1 : a->replicates ? (double)a->replicates : 4;
+    double unit_samples = scene->integrator.model->splats ? 1 << 15 : 1 << 17, blocks = render_crew.hooks ? 1
+                                                                                        : a->replicates
+                                                                                            ? (double)a->replicates
+                                                                                            : 4;
     double side = sqrt(unit_samples * blocks / scene->spp);
     return a->tile ? (int)a->tile : side < 1 ? 1 : side > 16 ? 16 : (int)side;
 }
@@ -118,7 +121,8 @@ static struct sr_render_job make_job(const struct render_arguments *a, const str
 {
     bool has_target = a->adaptive.error > 0 || a->adaptive.time_s > 0;
     return (struct sr_render_job){
-        .scene = scene->scene, .origin = {scene->origin[0], scene->origin[1], scene->origin[2]},
+        .scene = scene->scene,
+        .origin = {scene->origin[0], scene->origin[1], scene->origin[2]},
         .sensor = scene->sensor,
         .filter = scene->filter,
         .integrator = scene->integrator,
@@ -158,7 +162,8 @@ void render_print_replay(const struct rendering *r, const struct sr_render_repor
     fputc('\n', stderr);
 }
 
-static int finish(struct rendering *r, struct render_keeping *keeping, const struct sr_film *film, struct sr_render_report *report)
+static int finish(struct rendering *r, struct render_keeping *keeping, const struct sr_film *film,
+                  struct sr_render_report *report)
 {
     const struct render_arguments *a = r->arguments;
     struct sr_error error = {0};
@@ -192,7 +197,8 @@ static int render_scene(const struct render_arguments *a, const struct sr_import
     bool wants_exr = false;
     for (int i = 0; i < render_output_count(a); ++i)
         wants_exr |= a->has_range || sr_path_has_ending(render_output_name(a, scene, i), ".exr");
-    struct rendering r = {.arguments = a, .scene = scene, .on_terminal = !a->quiet && !(a->progress_s > 0) && isatty(STDERR_FILENO)};
+    struct rendering r = {
+        .arguments = a, .scene = scene, .on_terminal = !a->quiet && !(a->progress_s > 0) && isatty(STDERR_FILENO)};
     struct sr_render_job job = make_job(a, scene, a->aov && wants_exr, &r);
     r.job = &job;
     r.about = picture_about(arena, &job, scene->hash, scene->units);
@@ -203,7 +209,8 @@ static int render_scene(const struct render_arguments *a, const struct sr_import
         return print_sample(a, &job);
 
     struct sr_error error = {0};
-    const char *of_scene = sr_import_identity(arena, &a->import, scene), *identity = sr_render_identity(arena, &job, of_scene);
+    const char *of_scene = sr_import_identity(arena, &a->import, scene),
+               *identity = sr_render_identity(arena, &job, of_scene);
     if (!r.about || !of_scene || !identity)
         sr_fail(&error, SR_ERROR_RESOURCE, "not enough memory for what the picture is of");
     if (error.status)
@@ -245,9 +252,12 @@ static int run(int argc, char **argv)
     struct render_arguments a;
     int code = render_parse(argc, argv, &a);
     if (!code && render_crew.hooks && a.has_range)
-        code = command_usage(&command_render, "parts of a picture are for processes that do not know each other: use steradian render");
+        code = command_usage(&command_render,
+                             "parts of a picture are for processes that do not know each other: use steradian render");
     if (!code && render_crew.processes > 1 && strcmp(a.scene, "-") == 0)
-        code = command_usage(&command_render, "a scene from standard input reaches one process only: write it to a file that all can read");
+        code =
+            command_usage(&command_render,
+                          "a scene from standard input reaches one process only: write it to a file that all can read");
     if (!code && a.output_count && !a.has_pixel && !is_helper())
         code = render_check_outputs(&a, NULL);
     if (code)

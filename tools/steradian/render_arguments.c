@@ -184,7 +184,8 @@ static bool take_numbers(struct render_arguments *a, int option, const char *nam
 
 int render_parse(int argc, char **argv, struct render_arguments *a)
 {
-    *a = (struct render_arguments){.aov = true, .checkpoint_s = 60, .lambda = {(double)SR_LAMBDA_MIN, (double)SR_LAMBDA_MAX}};
+    *a = (struct render_arguments){
+        .aov = true, .checkpoint_s = 60, .lambda = {(double)SR_LAMBDA_MIN, (double)SR_LAMBDA_MAX}};
     int option, index = 0;
     while ((option = command_next_option(argc, argv, ":o:q", long_options, &index)) != -1) {
         switch (option) {
@@ -267,7 +268,8 @@ int render_parse(int argc, char **argv, struct render_arguments *a)
                              optind == argc ? "a scene file was expected" : "one scene file was expected, there are %d",
                              argc - optind);
     if (a->adaptive.is_on && a->replicates)
-        return command_usage(&command_render, "--replicates does not go with --adaptive, --error or --time: they have 16 of their own");
+        return command_usage(&command_render,
+                             "--replicates does not go with --adaptive, --error or --time: they have 16 of their own");
     if (a->no_checkpoint && (a->checkpoint || a->resume))
         return command_usage(&command_render, "--no-checkpoint does not go with --checkpoint or --resume");
     if (a->has_sample && !a->has_pixel)

@@ -19,9 +19,9 @@ struct render_arguments {
     double pixel[2], exposure_EV, partial_s;
     double lambda[2]; // [nm]
     const char *sampler;
-    bool has_range;                // some of the samples only: a part of the picture
+    bool has_range; // some of the samples only: a part of the picture
     struct sr_render_range range;
-    uint64_t part[2];              // instead, number K of N even ranges; N = 0: not asked for
+    uint64_t part[2];       // instead, number K of N even ranges; N = 0: not asked for
     const char *checkpoint; // NULL: beside the first output
     double checkpoint_s;    // between checkpoints
     double progress_s;      // between lines; 0: a bar, where there is a terminal
@@ -35,11 +35,11 @@ struct rendering {
     const struct render_arguments *arguments;
     const struct sr_import_result *scene;
     const struct sr_render_job *job;
-    const char *about;     // of picture_about
-    struct sr_render_range range; // of a part
-    const struct sr_render_keep *keep; // NULL: none
+    const char *about;                      // of picture_about
+    struct sr_render_range range;           // of a part
+    const struct sr_render_keep *keep;      // NULL: none
     double last_partial_s, last_progress_s; // [s]
-    bool on_terminal;  // a bar is drawn there
+    bool on_terminal;                       // a bar is drawn there
 };
 
 /* Set by a program whose processes render together; all zero: this one renders alone. */
@@ -82,7 +82,8 @@ int render_check_outputs(const struct render_arguments *a, const struct sr_impor
 /* Whether so many of the picture fit into this machine's memory, with what belongs to it. */
 bool render_has_room(const struct sr_render_job *job, int copies);
 /* The same for one, with a message. range: NULL, or of the part. */
-sr_status render_check_memory(const struct sr_render_job *job, const struct sr_render_range *range, struct sr_error *error);
+sr_status render_check_memory(const struct sr_render_job *job, const struct sr_render_range *range,
+                              struct sr_error *error);
 sr_status render_write_outputs(const struct rendering *r, const struct sr_film *film, double elapsed_s,
                                bool is_complete, struct sr_error *error);
 
@@ -108,11 +109,13 @@ struct render_keeping {
     int output_count;
 };
 /* Where and how the job is kept; 0, or the exit code of a failure that has been told. */
-int render_keep_begin(const struct render_arguments *a, const struct sr_import_result *scene, const char *identity, struct sr_render_job *job,
-                      struct render_keeping *k);
-/* After the outputs: is_written, whether they could be. Removes what is not needed any more, tells what is left; the exit code. */
-int render_keep_end(struct render_keeping *k, const struct sr_render_job *job, const struct sr_film *film, struct sr_render_part *part,
-                    struct sr_render_report *report, bool is_written); // of a film, or of a part
+int render_keep_begin(const struct render_arguments *a, const struct sr_import_result *scene, const char *identity,
+                      struct sr_render_job *job, struct render_keeping *k);
+/* After the outputs: is_written, whether they could be. Removes what is not needed any more, tells what is left; the
+ * exit code. */
+int render_keep_end(struct render_keeping *k, const struct sr_render_job *job, const struct sr_film *film,
+                    struct sr_render_part *part, struct sr_render_report *report,
+                    bool is_written); // of a film, or of a part
 
 /* ---- render_summary.c ---- */
 

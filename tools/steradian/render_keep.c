@@ -16,15 +16,18 @@ static const char *default_path(struct render_keeping *k, const char *output)
     return sr_arena_printf(&k->arena, "%s.srk", output);
 }
 
-int render_keep_begin(const struct render_arguments *a, const struct sr_import_result *scene, const char *identity, struct sr_render_job *job, struct render_keeping *k)
+int render_keep_begin(const struct render_arguments *a, const struct sr_import_result *scene, const char *identity,
+                      struct sr_render_job *job, struct render_keeping *k)
 {
-    *k = (struct render_keeping){.log = command_log((bool *)(uintptr_t)&a->quiet), .is_asked_for = a->checkpoint || a->resume};
+    *k = (struct render_keeping){.log = command_log((bool *)(uintptr_t)&a->quiet),
+                                 .is_asked_for = a->checkpoint || a->resume};
     if (a->no_checkpoint)
         return 0;
     struct sr_error error = {0};
     const char *path = a->checkpoint ? a->checkpoint : default_path(k, render_output_name(a, scene, 0));
     if (!path && a->resume)
-        return command_usage(&command_render, "--resume: the output is no file to keep a checkpoint beside: use --checkpoint FILE");
+        return command_usage(&command_render,
+                             "--resume: the output is no file to keep a checkpoint beside: use --checkpoint FILE");
     if (!path)
         return 0;
     if (a->checkpoint && command_check_output(path, &error) != SR_OK)
@@ -33,9 +36,16 @@ int render_keep_begin(const struct render_arguments *a, const struct sr_import_r
         if (strcmp(path, render_output_name(a, scene, i)) == 0)
             return command_usage(&command_render, "--checkpoint %s: that is where the picture goes", path);
     if (!a->resume && sr_file_exists(path) && !a->quiet)
-        fprintf(stderr, "note: %s is there of a render that has not ended; this one begins anew and will replace it (--resume goes on from it)\n", path);
-    k->keep = (struct sr_render_keep){.path = path, .identity = identity, .interval_s = a->checkpoint_s, .resumes = a->resume,
-                                      .has_no_copy = !render_has_room(job, 2), .log = &k->log};
+        fprintf(
+            stderr,
+            "note: %s is there of a render that has not ended; this one begins anew and will replace it (--resume goes on from it)\n",
+            path);
+    k->keep = (struct sr_render_keep){.path = path,
+                                      .identity = identity,
+                                      .interval_s = a->checkpoint_s,
+                                      .resumes = a->resume,
+                                      .has_no_copy = !render_has_room(job, 2),
+                                      .log = &k->log};
     k->output_count = render_output_count(a);
     for (int i = 0; i < k->output_count; ++i)
         k->outputs[i] = render_output_name(a, scene, i);
@@ -53,7 +63,8 @@ static void forget(const struct render_keeping *k, const struct sr_render_keep *
         sr_render_forget(keep);
 }
 
-int render_keep_end(struct render_keeping *k, const struct sr_render_job *job, const struct sr_film *film, struct sr_render_part *part, struct sr_render_report *report, bool is_written)
+int render_keep_end(struct render_keeping *k, const struct sr_render_job *job, const struct sr_film *film,
+                    struct sr_render_part *part, struct sr_render_report *report, bool is_written)
 {
     const struct sr_render_keep *keep = job->keep;
     if (!keep)
@@ -61,8 +72,11 @@ int render_keep_end(struct render_keeping *k, const struct sr_render_job *job, c
     struct sr_error error = {0};
     bool is_kept = report->kept.written > 0 && !report->kept.is_behind;
     if (report->is_complete && !is_written) { // all the work, for when there is room again
-        is_kept = (part ? sr_render_part_checkpoint(job, part, report, &error) : sr_render_checkpoint(job, film, report, &error)) == SR_OK;
-        fprintf(stderr, is_kept ? "steradian render: the work is done and kept in %s: --resume writes the picture\n" : "steradian render: nor can %s\n",
+        is_kept = (part ? sr_render_part_checkpoint(job, part, report, &error)
+                        : sr_render_checkpoint(job, film, report, &error)) == SR_OK;
+        fprintf(stderr,
+                is_kept ? "steradian render: the work is done and kept in %s: --resume writes the picture\n"
+                        : "steradian render: nor can %s\n",
                 is_kept ? keep->path : error.text);
         return SR_ERROR_RESOURCE;
     }

@@ -47,10 +47,13 @@ static double pixel_B(const struct sr_render_job *job)
 {
     double channels = job->with_aov ? 25 : 7;
     uint32_t groups = job->replicates ? job->replicates : 4; // of splats
-    double splats_B = job->integrator.model->splats ? (double)sr_film_splats_B(groups < SR_SPLAT_GROUPS ? groups : SR_SPLAT_GROUPS) : 0;
-    double adaptive_B = job->adaptive.is_on ? sizeof(struct sr_film_pixel) + (job->with_aov ? sizeof(struct sr_film_aov) : 0) + 32 : 0;
-    return splats_B + adaptive_B + (double)sizeof(struct sr_film_pixel) + (job->with_aov ? (double)sizeof(struct sr_film_aov) : 0) +
-           2 * channels * sizeof(float);
+    double splats_B = job->integrator.model->splats
+                          ? (double)sr_film_splats_B(groups < SR_SPLAT_GROUPS ? groups : SR_SPLAT_GROUPS)
+                          : 0;
+    double adaptive_B =
+        job->adaptive.is_on ? sizeof(struct sr_film_pixel) + (job->with_aov ? sizeof(struct sr_film_aov) : 0) + 32 : 0;
+    return splats_B + adaptive_B + (double)sizeof(struct sr_film_pixel) +
+           (job->with_aov ? (double)sizeof(struct sr_film_aov) : 0) + 2 * channels * sizeof(float);
 }
 
 static double memory_there_B(void)
@@ -68,13 +71,15 @@ bool render_has_room(const struct sr_render_job *job, int copies)
     return !(copies * pixels_of(job) * pixel_B(job) > memory_there_B());
 }
 
-sr_status render_check_memory(const struct sr_render_job *job, const struct sr_render_range *range, struct sr_error *error)
+sr_status render_check_memory(const struct sr_render_job *job, const struct sr_render_range *range,
+                              struct sr_error *error)
 {
-    double needed_B = pixels_of(job) * (pixel_B(job) + (range ? sr_render_samples_B(job, *range) : 0)), there_B = memory_there_B();
+    double needed_B = pixels_of(job) * (pixel_B(job) + (range ? sr_render_samples_B(job, *range) : 0)),
+           there_B = memory_there_B();
     if (there_B > 0 && needed_B > there_B)
-        return sr_fail(error, SR_ERROR_RESOURCE,
-                       "a picture of %d x %d pixels needs %.3g GiB of memory, this machine has %.3g GiB", job->film.x1 - job->film.x0,
-                       job->film.y1 - job->film.y0, needed_B / 1073741824, there_B / 1073741824);
+        return sr_fail(
+            error, SR_ERROR_RESOURCE, "a picture of %d x %d pixels needs %.3g GiB of memory, this machine has %.3g GiB",
+            job->film.x1 - job->film.x0, job->film.y1 - job->film.y0, needed_B / 1073741824, there_B / 1073741824);
     return SR_OK;
 }
 
@@ -87,8 +92,14 @@ sr_status render_write_outputs(const struct rendering *r, const struct sr_film *
     const char *names[RENDER_MAX_OUTPUTS];
     for (int i = 0; i < render_output_count(a); ++i)
         names[i] = render_output_name(a, r->scene, i);
-    struct picture p = {.film = film, .about = r->about, .is_replicated = r->job->replicates > 0 || r->job->adaptive.is_on, .is_complete = is_complete,
-                        .has_exposure = a->has_exposure, .exposure_EV = a->exposure_EV, .has_stamp = a->stamp, .elapsed_s = elapsed_s};
+    struct picture p = {.film = film,
+                        .about = r->about,
+                        .is_replicated = r->job->replicates > 0 || r->job->adaptive.is_on,
+                        .is_complete = is_complete,
+                        .has_exposure = a->has_exposure,
+                        .exposure_EV = a->exposure_EV,
+                        .has_stamp = a->stamp,
+                        .elapsed_s = elapsed_s};
     return picture_write(&p, names, render_output_count(a), error);
 }
 
@@ -166,8 +177,9 @@ static void print_progress(const struct sr_render_progress *p, bool in_place)
         bar[i] = i < p->share * CELLS ? '#' : '.';
     if (in_place)
         memcpy(bar + CELLS, "  ", sizeof "  ");
-    fprintf(stderr, "%s%5.1f %% %s%s, %s left, %.2f M rays/s%s", in_place ? "\r" : "", 100 * p->share, bar, duration(p->elapsed_s, elapsed),
-            duration(p->left_s, left), p->elapsed_s > 0 ? 1e-6 * (double)p->rays / p->elapsed_s : 0, in_place ? "\033[K" : "\n");
+    fprintf(stderr, "%s%5.1f %% %s%s, %s left, %.2f M rays/s%s", in_place ? "\r" : "", 100 * p->share, bar,
+            duration(p->elapsed_s, elapsed), duration(p->left_s, left),
+            p->elapsed_s > 0 ? 1e-6 * (double)p->rays / p->elapsed_s : 0, in_place ? "\033[K" : "\n");
 }
 
 void render_on_progress(void *user, const struct sr_render_progress *p)

@@ -27,7 +27,8 @@ bool render_parse_range(const char *text, struct sr_render_range *range)
 {
     uint64_t v[2];
     if (!parse_pair(text, '-', v) || v[0] >= v[1] || v[1] > UINT32_MAX) {
-        command_usage(&command_render, "--sample-range %s: A-B with A < B was expected, as in 0-16 for the first 16 samples", text);
+        command_usage(&command_render,
+                      "--sample-range %s: A-B with A < B was expected, as in 0-16 for the first 16 samples", text);
         return false;
     }
     *range = (struct sr_render_range){(uint32_t)v[0], (uint32_t)v[1]};
@@ -38,7 +39,8 @@ bool render_parse_part(const char *text, uint64_t part[2])
 {
     if (parse_pair(text, '/', part) && part[0] >= 1 && part[0] <= part[1] && part[1] <= UINT32_MAX)
         return true;
-    command_usage(&command_render, "--part %s: K/N with 1 <= K <= N was expected, as in 3/16 for the third of 16 parts", text);
+    command_usage(&command_render, "--part %s: K/N with 1 <= K <= N was expected, as in 3/16 for the third of 16 parts",
+                  text);
     return false;
 }
 
@@ -46,7 +48,9 @@ int render_check_part(const struct render_arguments *a)
 {
     const struct command *c = &command_render;
     if (a->adaptive.is_on)
-        return command_usage(c, "adaptive sampling decides by the values of all samples which ones follow: its pictures cannot be made in parts");
+        return command_usage(
+            c,
+            "adaptive sampling decides by the values of all samples which ones follow: its pictures cannot be made in parts");
     if (a->partial_s > 0)
         return command_usage(c, "--write-partial does not go with a part, which is written when it is whole");
     if (a->meter_count)
@@ -65,13 +69,15 @@ static int resolve(const struct render_arguments *a, uint32_t spp, struct sr_ren
     uint64_t K = a->part[0], N = a->part[1];
     *range = a->range;
     if (N > spp)
-        return command_usage(&command_render, "--part %llu/%llu: there are %u samples of each pixel: %u parts at most", (unsigned long long)K, (unsigned long long)N,
-                             spp, spp);
+        return command_usage(&command_render, "--part %llu/%llu: there are %u samples of each pixel: %u parts at most",
+                             (unsigned long long)K, (unsigned long long)N, spp, spp);
     if (N)
         *range = (struct sr_render_range){(uint32_t)((K - 1) * spp / N), (uint32_t)(K * spp / N)};
     if (range->end > spp)
-        return command_usage(&command_render, "--sample-range %u-%u: samples 0-%u of each pixel were expected: --spp, or the scene, says %u", range->begin, range->end,
-                             spp, spp);
+        return command_usage(
+            &command_render,
+            "--sample-range %u-%u: samples 0-%u of each pixel were expected: --spp, or the scene, says %u",
+            range->begin, range->end, spp, spp);
     return 0;
 }
 
@@ -96,7 +102,8 @@ static int tell(struct rendering *r, struct sr_render_part *part)
         render_print_replay(r, report);
     if (!a->quiet) {
         render_print_summary(r, film, report);
-        fprintf(stderr, "%s: samples %u-%u of 0-%u of each pixel\n", part_name(a), r->range.begin, r->range.end, r->job->spp);
+        fprintf(stderr, "%s: samples %u-%u of 0-%u of each pixel\n", part_name(a), r->range.begin, r->range.end,
+                r->job->spp);
     }
     return a->json ? render_print_json(r, film, report, json_array()) : 0;
 }

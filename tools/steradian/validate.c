@@ -78,13 +78,27 @@ static int parse(int argc, char **argv, struct arguments *a)
         const char *name = option >= OPT_CASE ? long_options[index].name : "";
         bool ok = true;
         switch (option) {
-        case OPT_CASE: a->only = optarg; break;
-        case OPT_ESTIMATOR: a->import.integrator = optarg; break;
-        case OPT_MARKDOWN: a->markdown = optarg; break;
-        case OPT_JSON: a->json = true; break;
-        case OPT_SAMPLES: ok = command_parse_uint(&command_validate, name, optarg, 64, (uint64_t)1 << 40, &a->samples); break;
-        case OPT_SEED: ok = command_parse_uint(&command_validate, name, optarg, 0, UINT32_MAX, &a->seed); break;
-        case OPT_THREADS: ok = command_parse_uint(&command_validate, name, optarg, 1, 1024, &a->threads); break;
+        case OPT_CASE:
+            a->only = optarg;
+            break;
+        case OPT_ESTIMATOR:
+            a->import.integrator = optarg;
+            break;
+        case OPT_MARKDOWN:
+            a->markdown = optarg;
+            break;
+        case OPT_JSON:
+            a->json = true;
+            break;
+        case OPT_SAMPLES:
+            ok = command_parse_uint(&command_validate, name, optarg, 64, (uint64_t)1 << 40, &a->samples);
+            break;
+        case OPT_SEED:
+            ok = command_parse_uint(&command_validate, name, optarg, 0, UINT32_MAX, &a->seed);
+            break;
+        case OPT_THREADS:
+            ok = command_parse_uint(&command_validate, name, optarg, 1, 1024, &a->threads);
+            break;
         case OPT_GOAL:
             a->goal = strtod(optarg, &end);
             if (strcmp(end, "%") == 0)
@@ -92,7 +106,8 @@ static int parse(int argc, char **argv, struct arguments *a)
             if (end == optarg || *end || !(a->goal > 0 && a->goal < 1))
                 return command_usage(&command_validate, "--goal %s: a share such as 1%% or 0.01 was expected", optarg);
             break;
-        default: return command_bad_option(&command_validate, long_options, option, argv);
+        default:
+            return command_bad_option(&command_validate, long_options, option, argv);
         }
         if (!ok)
             return SR_ERROR_USAGE;
@@ -146,11 +161,18 @@ static sr_status measure(const struct arguments *a, const char *folder, struct f
         sr_import_result_free(&scene);
         return sr_fail(error, SR_ERROR_INPUT, "%s has no meter \"%s\", which %s names", path, f->meter, a->table);
     }
-    struct sr_render_job job = {.scene = scene.scene, .integrator = scene.integrator, .sampler = SR_SAMPLER_SOBOL, .seed = (uint32_t)a->seed,
-                                .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX}, .jitter_lambda = true, .threads = (int)a->threads, .cancel = &render_interrupted};
+    struct sr_render_job job = {.scene = scene.scene,
+                                .integrator = scene.integrator,
+                                .sampler = SR_SAMPLER_SOBOL,
+                                .seed = (uint32_t)a->seed,
+                                .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
+                                .jitter_lambda = true,
+                                .threads = (int)a->threads,
+                                .cancel = &render_interrupted};
     // the target is an expanded uncertainty, the goal a standard one; rounds stop a little below
     double k = sr_student_quantile(0.975, REPLICATES - 1);
-    struct sr_measure_settings settings = {.samples = a->samples, .replicates = REPLICATES, .error = 0.9 * k * a->goal, .system = SR_PHOTOPIC};
+    struct sr_measure_settings settings = {
+        .samples = a->samples, .replicates = REPLICATES, .error = 0.9 * k * a->goal, .system = SR_PHOTOPIC};
     struct sr_arena arena = {0};
     struct sr_measurement m;
     sr_status status = sr_measure(&job, meter, &settings, &arena, &m, error);
@@ -179,19 +201,23 @@ static void print_row(FILE *out, const struct found *f, bool is_markdown)
     char reading[256];
     sr_quantity_text(NULL, &f->measured, reading, sizeof reading);
     if (is_markdown)
-        fprintf(out, "| %s | [%s](../validation/%s) | %.9g | %s | %+.1e | %+.2f | %s |\n", f->id, f->what, f->scene, f->expected, reading, f->relative, f->z, verdict(f));
+        fprintf(out, "| %s | [%s](../validation/%s) | %.9g | %s | %+.1e | %+.2f | %s |\n", f->id, f->what, f->scene,
+                f->expected, reading, f->relative, f->z, verdict(f));
     else
-        fprintf(out, "%-16.16s %-34.34s %-13.9g %-52s %+9.1e %+6.2f %s\n", f->id, f->scene + (strncmp(f->scene, "scenes/", 7) == 0 ? 7 : 0), f->expected, reading, f->relative,
-                f->z, verdict(f));
+        fprintf(out, "%-16.16s %-34.34s %-13.9g %-52s %+9.1e %+6.2f %s\n", f->id,
+                f->scene + (strncmp(f->scene, "scenes/", 7) == 0 ? 7 : 0), f->expected, reading, f->relative, f->z,
+                verdict(f));
     fflush(out);
 }
 
 static json_t *row_json(const struct found *f)
 {
-    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:f, s:f, s:o, s:o, s:o, s:s}", "case", command_json_text(f->id), "scene", command_json_text(f->scene), "meter",
-                     command_json_text(f->meter), "what", command_json_text(f->what), "source", command_json_text(f->source), "expected", f->expected,
-                     "expected_uncertainty", f->uncertainty, "measured", command_json_measured(&f->measured), "relative_difference", command_json_number(f->relative), "z",
-                     command_json_number(f->z), "verdict", verdict(f));
+    return json_pack("{s:o, s:o, s:o, s:o, s:o, s:f, s:f, s:o, s:o, s:o, s:s}", "case", command_json_text(f->id),
+                     "scene", command_json_text(f->scene), "meter", command_json_text(f->meter), "what",
+                     command_json_text(f->what), "source", command_json_text(f->source), "expected", f->expected,
+                     "expected_uncertainty", f->uncertainty, "measured", command_json_measured(&f->measured),
+                     "relative_difference", command_json_number(f->relative), "z", command_json_number(f->z), "verdict",
+                     verdict(f));
 }
 
 /* The page beside its place, then renamed. */
@@ -204,18 +230,22 @@ static sr_status open_page(const struct arguments *a, FILE **page, char *tempora
     *page = fopen(temporary, "w");
     if (!*page)
         return sr_fail(error, SR_ERROR_INPUT, "%s cannot be written", a->markdown);
-    fprintf(*page, "# Validation\n\n"
-                   "Scenes whose answers are known, measured by `steradian validate --goal %g` (estimator: %s). Each is a pbrt-v4 file in\n"
-                   "`validation/scenes`, written from its closed form by `validation/generate.py`; expected values also stand in\n"
-                   "`validation/cases.tsv`, so that other programs can be run on them. Rows named CIE 171 are of the kinds of cases of\n"
-                   "CIE 171:2006, with closed forms of our own: validated against, never certified. Intervals: 95 %%, Student, from %d\n"
-                   "replicates. A case passes if |z| < %g, or within %g of its value.\n\n"
-                   "| case | what | expected | measured | relative difference | z | verdict |\n|---|---|---|---|---|---|---|\n",
-            a->goal, a->import.integrator ? a->import.integrator : "that of each scene", REPLICATES, LARGEST_Z, FLOAT_RESOLUTION);
+    fprintf(
+        *page,
+        "# Validation\n\n"
+        "Scenes whose answers are known, measured by `steradian validate --goal %g` (estimator: %s). Each is a pbrt-v4 file in\n"
+        "`validation/scenes`, written from its closed form by `validation/generate.py`; expected values also stand in\n"
+        "`validation/cases.tsv`, so that other programs can be run on them. Rows named CIE 171 are of the kinds of cases of\n"
+        "CIE 171:2006, with closed forms of our own: validated against, never certified. Intervals: 95 %%, Student, from %d\n"
+        "replicates. A case passes if |z| < %g, or within %g of its value.\n\n"
+        "| case | what | expected | measured | relative difference | z | verdict |\n|---|---|---|---|---|---|---|\n",
+        a->goal, a->import.integrator ? a->import.integrator : "that of each scene", REPLICATES, LARGEST_Z,
+        FLOAT_RESOLUTION);
     return SR_OK;
 }
 
-static sr_status run_table(const struct arguments *a, FILE *table, FILE *page, json_t *rows, int counts[2], struct sr_error *error)
+static sr_status run_table(const struct arguments *a, FILE *table, FILE *page, json_t *rows, int counts[2],
+                           struct sr_error *error)
 {
     char line[LINE], folder[LINE] = "", *column[COLUMNS];
     const char *slash = strrchr(a->table, '/');
@@ -227,13 +257,17 @@ static sr_status run_table(const struct arguments *a, FILE *table, FILE *page, j
         char *end = "";
         struct found f = {.id = column[0]};
         if (n >= COLUMNS) {
-            f = (struct found){.id = column[0], .scene = column[1], .meter = column[2], .what = column[6], .source = column[7]};
+            f = (struct found){
+                .id = column[0], .scene = column[1], .meter = column[2], .what = column[6], .source = column[7]};
             f.expected = strtod(column[3], &end);
             f.uncertainty = fabs(f.expected) * strtod(column[5], NULL);
         }
         if (n < COLUMNS || *end || !(fabs(f.expected) > 0))
-            return sr_fail(error, SR_ERROR_INPUT, "%s:%d: case, scene, meter, expected value (not 0), unit, its relative uncertainty, what, source were expected, "
-                           "separated by tabs", a->table, number);
+            return sr_fail(
+                error, SR_ERROR_INPUT,
+                "%s:%d: case, scene, meter, expected value (not 0), unit, its relative uncertainty, what, source were expected, "
+                "separated by tabs",
+                a->table, number);
         if (a->only && !strstr(f.id, a->only) && !strstr(f.scene, a->only))
             continue;
         if (measure(a, folder, &f, error) != SR_OK)
@@ -268,7 +302,8 @@ static int run(int argc, char **argv)
     render_catch_interrupts();
     if (open_page(&a, &page, temporary, sizeof temporary, &error) == SR_OK) {
         if (!rows)
-            printf("%-16s %-34s %-13s %-52s %9s %6s verdict\n", "case", "scene", "expected", "measured", "relative", "z");
+            printf("%-16s %-34s %-13s %-52s %9s %6s verdict\n", "case", "scene", "expected", "measured", "relative",
+                   "z");
         run_table(&a, table, page, rows, counts, &error);
     }
     fclose(table);
@@ -292,10 +327,12 @@ static int run(int argc, char **argv)
         return command_fail("validate", &error);
     }
     if (rows)
-        code = command_print_json("validate", json_pack("{s:s, s:f, s:i, s:i, s:o}", "version", SR_VERSION, "goal", a.goal, "cases", counts[0], "passed", counts[1], "rows", rows));
+        code = command_print_json("validate", json_pack("{s:s, s:f, s:i, s:i, s:o}", "version", SR_VERSION, "goal",
+                                                        a.goal, "cases", counts[0], "passed", counts[1], "rows", rows));
     else
         printf("%d of %d cases pass\n", counts[1], counts[0]);
     return code ? code : counts[0] == counts[1] ? 0 : 1;
 }
 
-const struct command command_validate = {"validate", "scenes whose answers are known, measured and compared", help, run};
+const struct command command_validate = {"validate", "scenes whose answers are known, measured and compared", help,
+                                         run};

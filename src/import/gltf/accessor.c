@@ -38,8 +38,8 @@ static uint32_t read_components(struct sr_gltf *g, const struct sr_gltf_at *at)
 }
 
 /* Whether count elements fit. */
-static void check_fit(struct sr_gltf *g, const struct sr_gltf_at *at, struct sr_gltf_buffer view, uint64_t offset, uint64_t count,
-                      uint64_t stride, uint64_t size)
+static void check_fit(struct sr_gltf *g, const struct sr_gltf_at *at, struct sr_gltf_buffer view, uint64_t offset,
+                      uint64_t count, uint64_t stride, uint64_t size)
 {
     uint64_t end = offset + (count - 1) * stride + size;
     if (sr_gltf_is_well(g) && end > view.size)
@@ -58,7 +58,8 @@ static void read_sparse(struct sr_gltf *g, struct sr_gltf_accessor *a)
     a->sparse_type = read_type(g, &indices);
     uint64_t i_offset = sr_gltf_size(g, &indices, "byteOffset", 0, (uint64_t)1 << 50);
     uint64_t v_offset = sr_gltf_size(g, &values, "byteOffset", 0, (uint64_t)1 << 50);
-    struct sr_gltf_buffer i_view = sr_gltf_view(g, &indices, "bufferView", &unused), v_view = sr_gltf_view(g, &values, "bufferView", &unused);
+    struct sr_gltf_buffer i_view = sr_gltf_view(g, &indices, "bufferView", &unused),
+                          v_view = sr_gltf_view(g, &values, "bufferView", &unused);
     if (!sr_gltf_is_well(g) || count == 0)
         return;
     uint32_t i_size = size_of(a->sparse_type), v_size = a->components * size_of(a->type);
@@ -74,7 +75,8 @@ static void read_sparse(struct sr_gltf *g, struct sr_gltf_accessor *a)
     for (uint32_t i = 0, last = 0; i < count; ++i) {
         uint32_t index = sr_gltf_whole(&list, i, 0);
         if (index >= a->count || (i > 0 && index <= last)) {
-            sr_gltf_fail(g, &indices, "index %u at place %u: expected less than %u, and increasing", index, i, a->count);
+            sr_gltf_fail(g, &indices, "index %u at place %u: expected less than %u, and increasing", index, i,
+                         a->count);
             return;
         }
         last = index;
@@ -82,7 +84,8 @@ static void read_sparse(struct sr_gltf *g, struct sr_gltf_accessor *a)
     a->sparse_count = (uint32_t)count;
 }
 
-struct sr_gltf_accessor sr_gltf_accessor(struct sr_gltf *g, const struct sr_gltf_at *at, const char *key, uint32_t components)
+struct sr_gltf_accessor sr_gltf_accessor(struct sr_gltf *g, const struct sr_gltf_at *at, const char *key,
+                                         uint32_t components)
 {
     struct sr_gltf_accessor a = {0}, none = {0};
     uint32_t index1 = sr_gltf_index1(g, at, key, sr_gltf_root_count(g, "accessors"));
@@ -99,7 +102,8 @@ struct sr_gltf_accessor sr_gltf_accessor(struct sr_gltf *g, const struct sr_gltf
     if (sr_gltf_is_well(g) && a.count == 0)
         sr_gltf_fail(g, &a.at, "expected a \"count\" of 1 or more");
     if (components && a.components != components)
-        sr_gltf_fail(g, &a.at, "has %u numbers in an element: expected %u, as %s of %s", a.components, components, key, at->pointer);
+        sr_gltf_fail(g, &a.at, "has %u numbers in an element: expected %u, as %s of %s", a.components, components, key,
+                     at->pointer);
     if (!sr_gltf_is_well(g))
         return none;
     if (a.stride < size)
@@ -115,7 +119,8 @@ struct sr_gltf_accessor sr_gltf_accessor(struct sr_gltf *g, const struct sr_gltf
 /* Where element i lies; NULL: zeros. */
 static const uint8_t *element(const struct sr_gltf_accessor *a, uint32_t i)
 {
-    struct sr_gltf_accessor list = {.type = a->sparse_type, .data = a->sparse_indices, .stride = size_of(a->sparse_type)};
+    struct sr_gltf_accessor list = {
+        .type = a->sparse_type, .data = a->sparse_indices, .stride = size_of(a->sparse_type)};
     uint32_t lo = 0, hi = a->sparse_count;
     while (lo < hi) {
         uint32_t middle = lo + (hi - lo) / 2, index = sr_gltf_whole(&list, middle, 0);

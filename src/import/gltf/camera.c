@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The camera that the file has, or one that sees all of it; and the film, as wide as the camera says.
  *
- * A camera of glTF looks along -z of its node, y up. yfov is the whole vertical angle; "fov" is that of the shorter side. glTF 2.0, 3.10. */
+ * A camera of glTF looks along -z of its node, y up. yfov is the whole vertical angle; "fov" is that of the shorter
+ * side. glTF 2.0, 3.10. */
 #include "import/framing.h"
 #include "import/gltf/gltf.h"
 
@@ -13,11 +14,13 @@ static const double pi = 3.14159265358979323846;
 /* Width and height of the picture: 720 pixels on the shorter side, or what the options say. */
 static double place_film(struct sr_gltf *g, double aspect)
 {
-    int32_t width = aspect >= 1 ? (int32_t)fmin(round(720 * aspect), 16384) : 720, height = aspect >= 1 ? 720 : (int32_t)fmin(round(720 / aspect), 16384);
+    int32_t width = aspect >= 1 ? (int32_t)fmin(round(720 * aspect), 16384) : 720,
+            height = aspect >= 1 ? 720 : (int32_t)fmin(round(720 / aspect), 16384);
     sr_compose_int(&g->c, "xresolution", width);
     sr_compose_int(&g->c, "yresolution", height);
     sr_compose_setting(&g->c, "Film", "rgb");
-    uint32_t w = g->options->width ? g->options->width : (uint32_t)width, h = g->options->height ? g->options->height : (uint32_t)height;
+    uint32_t w = g->options->width ? g->options->width : (uint32_t)width,
+             h = g->options->height ? g->options->height : (uint32_t)height;
     return (double)w / h;
 }
 
@@ -50,13 +53,15 @@ static bool place_own(struct sr_gltf *g, uint32_t node, const struct sr_gltf_at 
         return false;
     }
     if (type && strcmp(type, "perspective") == 0 && p.json) {
-        double aspect = sr_gltf_number(g, &p, "aspectRatio", 16.0 / 9, 1e-3, 1e3), yfov = sr_gltf_number(g, &p, "yfov", 0.8, 1e-4, pi - 1e-4);
+        double aspect = sr_gltf_number(g, &p, "aspectRatio", 16.0 / 9, 1e-3, 1e3),
+               yfov = sr_gltf_number(g, &p, "yfov", 0.8, 1e-4, pi - 1e-4);
         aspect = place_film(g, aspect);
         put_fov(g, yfov, aspect);
         sr_compose_camera(&g->c, "perspective", &to_world);
     } else if (type && strcmp(type, "orthographic") == 0 && o.json) {
         float *window = sr_pbrt_words(g->c.d, 4 * sizeof *window);
-        double x = fabs(sr_gltf_number(g, &o, "xmag", 1, -1e30, 1e30)), y = fabs(sr_gltf_number(g, &o, "ymag", 1, -1e30, 1e30));
+        double x = fabs(sr_gltf_number(g, &o, "xmag", 1, -1e30, 1e30)),
+               y = fabs(sr_gltf_number(g, &o, "ymag", 1, -1e30, 1e30));
         if (!window || !(x > 0) || !(y > 0)) {
             sr_gltf_fail(g, &o, "expected xmag and ymag other than 0");
             return false;
@@ -95,8 +100,8 @@ void sr_gltf_place_camera(struct sr_gltf *g, sr_vec3 *key)
         ++number;
         bool is_chosen = !is_placed && is_meant(g, &node, &camera, number) && place_own(g, i, &camera);
         if (number <= 100)
-            sr_log(g->c.d->log, SR_INFO, "%s: camera %u \"%s\"%s", g->c.path, number, sr_gltf_name(g, *sr_gltf_name(g, &camera) ? &camera : &node),
-                   is_chosen ? ", used" : "");
+            sr_log(g->c.d->log, SR_INFO, "%s: camera %u \"%s\"%s", g->c.path, number,
+                   sr_gltf_name(g, *sr_gltf_name(g, &camera) ? &camera : &node), is_chosen ? ", used" : "");
         is_placed = is_placed || is_chosen;
     }
     if (g->options->camera && !is_placed && sr_gltf_is_well(g))

@@ -46,7 +46,8 @@ static const char *tinted(struct sr_gltf *g, const struct sr_gltf_look *m, const
     struct sr_image *image = decode(g, &m->emission_texture);
     if (!image)
         return "";
-    const char *slash = strrchr(g->c.path, '/'), *name = sr_compose_printf(&g->c, "%s#%s.emission.pfm", slash ? slash + 1 : g->c.path, s->name);
+    const char *slash = strrchr(g->c.path, '/'),
+               *name = sr_compose_printf(&g->c, "%s#%s.emission.pfm", slash ? slash + 1 : g->c.path, s->name);
     char head[64];
     int length = snprintf(head, sizeof head, "PF\n%u %u\n-1.0\n", image->width, image->height), rgb[3];
     size_t row = 3 * (size_t)image->width, size = (size_t)length + row * image->height * sizeof(float);
@@ -87,7 +88,8 @@ static struct sr_rgb mean(struct sr_gltf *g, const struct sr_gltf_look *m)
     }
     sr_image_free(image);
     double n = (double)count;
-    return (struct sr_rgb){(float)(sum[0] / n * m->emission[0]), (float)(sum[1] / n * m->emission[1]), (float)(sum[2] / n * m->emission[2])};
+    return (struct sr_rgb){(float)(sum[0] / n * m->emission[0]), (float)(sum[1] / n * m->emission[1]),
+                           (float)(sum[2] / n * m->emission[2])};
 }
 
 uint32_t sr_gltf_emission(struct sr_gltf *g, const struct sr_gltf_look *m, const struct sr_gltf_surface *s)
@@ -98,7 +100,8 @@ uint32_t sr_gltf_emission(struct sr_gltf *g, const struct sr_gltf_look *m, const
     if (m->is_double_sided || m->is_unlit)
         sr_compose_bool(to, "twosided", true);
     if (has_image && s->is_split) {
-        sr_gltf_warn(g, &m->at, "an emissive texture beside vertex colours or other coordinates: all of it shines as its mean");
+        sr_gltf_warn(g, &m->at,
+                     "an emissive texture beside vertex colours or other coordinates: all of it shines as its mean");
         sr_compose_rgb(to, "L", mean(g, m));
     } else if (has_image) {
         if (strcmp(m->emission_texture.swrap, "repeat") == 0 || strcmp(m->emission_texture.twrap, "repeat") == 0)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The container: JSON text, or GLB (a header of 12 bytes, then chunks of length, type and bytes, little-endian; the first
- * is JSON, the second may be buffer 0); then the buffers and the views of them. glTF 2.0, 3.6 and 4. */
+/* The container: JSON text, or GLB (a header of 12 bytes, then chunks of length, type and bytes, little-endian; the
+ * first is JSON, the second may be buffer 0); then the buffers and the views of them. glTF 2.0, 3.6 and 4. */
 #include "import/gltf/gltf.h"
 
 #include <string.h>
@@ -25,7 +25,8 @@ static bool open_chunks(struct sr_gltf *g, const char *bytes, size_t size, struc
         uint32_t type = little(bytes + at + 4);
         const uint8_t *data = (const uint8_t *)bytes + at + 8;
         if (at + 8 + length > total)
-            sr_gltf_fail(g, NULL, "GLB chunk %u of %llu bytes ends after the file", (unsigned)number, (unsigned long long)length);
+            sr_gltf_fail(g, NULL, "GLB chunk %u of %llu bytes ends after the file", (unsigned)number,
+                         (unsigned long long)length);
         else if (number == 0 && type == 0x4e4f534au)
             *json = (struct sr_gltf_buffer){data, length};
         else if (number == 1 && type == 0x004e4942u)
@@ -87,23 +88,13 @@ static void check_asset(struct sr_gltf *g)
 /* What a file says it cannot do without. Compressed things are refused where they are met. */
 static void check_extensions(struct sr_gltf *g)
 {
-    static const char *const known[] = {"EXT_mesh_gpu_instancing",
-                                        "KHR_lights_punctual",
-                                        "KHR_materials_anisotropy",
-                                        "KHR_materials_clearcoat",
-                                        "KHR_materials_dispersion",
-                                        "KHR_materials_emissive_strength",
-                                        "KHR_materials_ior",
-                                        "KHR_materials_iridescence",
-                                        "KHR_materials_pbrSpecularGlossiness",
-                                        "KHR_materials_sheen",
-                                        "KHR_materials_specular",
-                                        "KHR_materials_transmission",
-                                        "KHR_materials_unlit",
-                                        "KHR_materials_variants",
-                                        "KHR_materials_volume",
-                                        "KHR_mesh_quantization",
-                                        "KHR_texture_transform"};
+    static const char *const known[] = {
+        "EXT_mesh_gpu_instancing", "KHR_lights_punctual",       "KHR_materials_anisotropy",
+        "KHR_materials_clearcoat", "KHR_materials_dispersion",  "KHR_materials_emissive_strength",
+        "KHR_materials_ior",       "KHR_materials_iridescence", "KHR_materials_pbrSpecularGlossiness",
+        "KHR_materials_sheen",     "KHR_materials_specular",    "KHR_materials_transmission",
+        "KHR_materials_unlit",     "KHR_materials_variants",    "KHR_materials_volume",
+        "KHR_mesh_quantization",   "KHR_texture_transform"};
     struct sr_gltf_at required = sr_gltf_list(g, "extensionsRequired"), used = sr_gltf_list(g, "extensionsUsed");
     for (int pass = 0; pass < 2; ++pass) {
         const struct sr_gltf_at *list = pass == 0 ? &required : &used;
@@ -113,7 +104,8 @@ static void check_extensions(struct sr_gltf *g)
             for (size_t k = 0; k < sizeof known / sizeof *known && !is_known; ++k)
                 is_known = strcmp(known[k], name) == 0;
             if (!is_known && pass == 0)
-                sr_gltf_warn(g, NULL, "the extension %.60s is not supported, and the file says that it cannot do without", name);
+                sr_gltf_warn(g, NULL,
+                             "the extension %.60s is not supported, and the file says that it cannot do without", name);
             else if (!is_known)
                 sr_gltf_warn(g, NULL, "the extension %.60s is not supported and does nothing", name);
         }

@@ -60,7 +60,10 @@ static struct sr_gltf_at typed(struct sr_gltf *g, const struct sr_gltf_at *at, c
     json_t *json = at->json ? json_object_get(at->json, key) : NULL;
     struct sr_gltf_at r = below(at, json, key);
     if (json && json_typeof(json) != type) {
-        sr_gltf_fail(g, &r, "expected %s", type == JSON_OBJECT ? "an object" : type == JSON_ARRAY ? "a list" : "a string");
+        sr_gltf_fail(g, &r, "expected %s",
+                     type == JSON_OBJECT  ? "an object"
+                     : type == JSON_ARRAY ? "a list"
+                                          : "a string");
         r.json = NULL;
     }
     return r;
@@ -119,7 +122,8 @@ struct sr_gltf_at sr_gltf_extension(struct sr_gltf *g, const struct sr_gltf_at *
 
 /* ---- values ---- */
 
-double sr_gltf_number(struct sr_gltf *g, const struct sr_gltf_at *at, const char *key, double otherwise, double min, double max)
+double sr_gltf_number(struct sr_gltf *g, const struct sr_gltf_at *at, const char *key, double otherwise, double min,
+                      double max)
 {
     json_t *json = at->json ? json_object_get(at->json, key) : NULL;
     if (!json)
@@ -179,7 +183,8 @@ bool sr_gltf_numbers(struct sr_gltf *g, const struct sr_gltf_at *at, const char 
         return false;
     bool is_good = json_array_size(list.json) == n;
     for (uint32_t i = 0; i < n && is_good; ++i)
-        is_good = json_is_number(json_array_get(list.json, i)) && fabs(json_number_value(json_array_get(list.json, i))) < 1e30;
+        is_good = json_is_number(json_array_get(list.json, i)) &&
+                  fabs(json_number_value(json_array_get(list.json, i))) < 1e30;
     if (!is_good) {
         sr_gltf_fail(g, &list, "expected %u numbers", n);
         return false;
@@ -227,7 +232,8 @@ bool sr_gltf_charge(struct sr_gltf *g, const struct sr_gltf_at *at, uint64_t byt
     return sr_gltf_is_well(g);
 }
 
-void *sr_gltf_array_for(struct sr_gltf *g, const struct sr_gltf_at *at, struct sr_arena *arena, uint64_t count, size_t size)
+void *sr_gltf_array_for(struct sr_gltf *g, const struct sr_gltf_at *at, struct sr_arena *arena, uint64_t count,
+                        size_t size)
 {
     void *p = sr_gltf_charge(g, at, count * size + 16) ? sr_arena_alloc(arena, count * size + 16) : NULL;
     if (!p)

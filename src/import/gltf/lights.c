@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* Lights without extent (KHR_lights_punctual).
  *
- *     point, spot: intensity in cd; directional: illuminance in lx of a surface that faces it; all of white light, times colour
+ *     point, spot: intensity in cd; directional: illuminance in lx of a surface that faces it; all of white light,
+ * times colour
  *
- * Lights shine along their node's -z. Spots fall off between their cones as pbrt's do, smoothly in the cosine; glTF only
- * recommends its own way. */
+ * Lights shine along their node's -z. Spots fall off between their cones as pbrt's do, smoothly in the cosine; glTF
+ * only recommends its own way. */
 #include "import/gltf/gltf.h"
 
 #include <string.h>
@@ -22,7 +23,8 @@ static void place_spot(struct sr_gltf *g, const struct sr_gltf_at *light)
 {
     struct sr_gltf_at spot = sr_gltf_object(g, light, "spot");
     double outer = sr_gltf_number(g, &spot, "outerConeAngle", 0.78539816339744831, 0, 1.5707963267948966 + 1e-6);
-    double inner = sr_gltf_number(g, &spot, "innerConeAngle", 0, 0, 1.5707963267948966), degrees = 180 / 3.14159265358979323846;
+    double inner = sr_gltf_number(g, &spot, "innerConeAngle", 0, 0, 1.5707963267948966),
+           degrees = 180 / 3.14159265358979323846;
     inner = fmin(inner, outer);
     sr_compose_float(&g->c, "coneangle", (float)(outer * degrees));
     sr_compose_float(&g->c, "conedeltaangle", (float)((outer - inner) * degrees));
@@ -40,7 +42,8 @@ static void place_light(struct sr_gltf *g, const struct sr_gltf_at *light, const
         sr_gltf_note(g, "range of a light", "not used, for light has no end");
     struct sr_transform t = sr_gltf_transform_of(world);
     ++g->light_count;
-    if (!sr_gltf_charge(g, light, LIGHT_B) || intensity == 0 || colour.r + colour.g + colour.b == 0 || (!is_point && !sr_transform_is_valid(&t)))
+    if (!sr_gltf_charge(g, light, LIGHT_B) || intensity == 0 || colour.r + colour.g + colour.b == 0 ||
+        (!is_point && !sr_transform_is_valid(&t)))
         return;
     double no_turn[4][4] = {{1, 0, 0, world[0][3]}, {0, 1, 0, world[1][3]}, {0, 0, 1, world[2][3]}, {0, 0, 0, 1}};
     struct sr_transform place = is_point ? sr_gltf_transform_of(no_turn) : t;
@@ -59,7 +62,8 @@ static void place_light(struct sr_gltf *g, const struct sr_gltf_at *light, const
 
 void sr_gltf_place_lights(struct sr_gltf *g)
 {
-    struct sr_gltf_at root = {.json = g->root}, all = sr_gltf_extension(g, &root, "KHR_lights_punctual"), list = sr_gltf_array(g, &all, "lights");
+    struct sr_gltf_at root = {.json = g->root}, all = sr_gltf_extension(g, &root, "KHR_lights_punctual"),
+                      list = sr_gltf_array(g, &all, "lights");
     for (uint32_t i = 0; i < g->node_count && sr_gltf_is_well(g); ++i) {
         struct sr_gltf_at node = sr_gltf_entry(g, "nodes", i), own = sr_gltf_extension(g, &node, "KHR_lights_punctual");
         uint32_t light1 = g->nodes[i].is_of_scene ? sr_gltf_index1(g, &own, "light", sr_gltf_count(&list)) : 0;

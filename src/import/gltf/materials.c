@@ -2,9 +2,9 @@
 /* Materials of glTF as "openpbr": the table of docs/guide/gltf.md.
  *
  *     metallic-roughness:  base_color, base_metalness, specular_roughness; F0 by the index of refraction, 1.5
- *     anisotropy s:        a_t = lerp(r^2, 1, s^2), a_b = r^2  as  r' sqrt(2 / (1 + (1 - a)^2)) = a_t, a = 1 - a_b / a_t
- *     specular-glossiness: F0 = max(specular) as an index of refraction, its tint as specular_color, roughness = 1 - glossiness
- *     volume:              sigma_a = -ln(attenuationColor) / attenuationDistance                        [1/m]
+ *     anisotropy s:        a_t = lerp(r^2, 1, s^2), a_b = r^2  as  r' sqrt(2 / (1 + (1 - a)^2)) = a_t, a = 1 - a_b /
+ * a_t specular-glossiness: F0 = max(specular) as an index of refraction, its tint as specular_color, roughness = 1 -
+ * glossiness volume:              sigma_a = -ln(attenuationColor) / attenuationDistance                        [1/m]
  *
  * glTF 2.0, 3.9 and appendix B; the extensions KHR_materials_*. What has no counterpart is told by its name. */
 #include "import/gltf/gltf.h"
@@ -85,13 +85,15 @@ static void read_gloss(struct sr_gltf *g, const struct sr_gltf_at *at, struct sr
     m->specular = most > 0.249 ? fmin(most / 0.249, 2) : 1; // an index of 3 is the model's greatest, and doubled
     m->is_glossy = true;
     if (most > 0.5)
-        sr_gltf_note(g, "KHR_materials_pbrSpecularGlossiness", "reflectances beyond 0.5 at normal incidence are taken as 0.5");
+        sr_gltf_note(g, "KHR_materials_pbrSpecularGlossiness",
+                     "reflectances beyond 0.5 at normal incidence are taken as 0.5");
 }
 
 /* Material 0 is that of primitives without. */
 void sr_gltf_read_look(struct sr_gltf *g, uint32_t material1, struct sr_gltf_look *m)
 {
-    *m = (struct sr_gltf_look){.colour = {1, 1, 1, 1}, .specular_colour = {1, 1, 1}, .attenuation = {1, 1, 1}, .normal_scale = 1};
+    *m = (struct sr_gltf_look){
+        .colour = {1, 1, 1, 1}, .specular_colour = {1, 1, 1}, .attenuation = {1, 1, 1}, .normal_scale = 1};
     if (material1)
         m->at = sr_gltf_entry(g, "materials", material1 - 1);
     struct sr_gltf_at pbr = sr_gltf_object(g, &m->at, "pbrMetallicRoughness");
@@ -104,7 +106,10 @@ void sr_gltf_read_look(struct sr_gltf *g, uint32_t material1, struct sr_gltf_loo
     m->normal_scale = sr_gltf_number(g, &m->normal_texture.info, "scale", 1, -1e6, 1e6);
     m->is_double_sided = sr_gltf_bool(g, &m->at, "doubleSided", false);
     const char *mode = sr_gltf_string(g, &m->at, "alphaMode");
-    m->alpha = !mode || strcmp(mode, "OPAQUE") == 0 ? 0 : strcmp(mode, "MASK") == 0 ? 1 : strcmp(mode, "BLEND") == 0 ? 2 : 3;
+    m->alpha = !mode || strcmp(mode, "OPAQUE") == 0 ? 0
+               : strcmp(mode, "MASK") == 0          ? 1
+               : strcmp(mode, "BLEND") == 0         ? 2
+                                                    : 3;
     if (m->alpha == 3)
         sr_gltf_fail(g, &m->at, "alphaMode \"%.20s\": expected OPAQUE, MASK or BLEND", mode);
     m->cutoff = sr_gltf_number(g, &m->at, "alphaCutoff", 0.5, 0, INFINITY);
@@ -137,9 +142,20 @@ void sr_gltf_read_look(struct sr_gltf *g, uint32_t material1, struct sr_gltf_loo
 /* All textures that look for coordinates of their own. */
 static int textures_of(const struct sr_gltf_look *m, const struct sr_gltf_texture *list[20])
 {
-    const struct sr_gltf_texture *all[] = {&m->emission_texture, &m->normal_texture, &m->base_texture, &m->metal_texture, &m->transmission_texture,
-                                           &m->specular_texture, &m->specular_colour_texture, &m->coat_texture, &m->coat_roughness_texture,
-                                           &m->sheen_texture, &m->sheen_roughness_texture, &m->gloss_texture, &m->film_texture, &m->film_thickness_texture};
+    const struct sr_gltf_texture *all[] = {&m->emission_texture,
+                                           &m->normal_texture,
+                                           &m->base_texture,
+                                           &m->metal_texture,
+                                           &m->transmission_texture,
+                                           &m->specular_texture,
+                                           &m->specular_colour_texture,
+                                           &m->coat_texture,
+                                           &m->coat_roughness_texture,
+                                           &m->sheen_texture,
+                                           &m->sheen_roughness_texture,
+                                           &m->gloss_texture,
+                                           &m->film_texture,
+                                           &m->film_thickness_texture};
     int n = 0;
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
         if (all[i]->info.json)
@@ -178,7 +194,8 @@ struct number {
     double value;
 };
 
-static struct number textured(const struct maker *k, const char *what, double factor, const struct sr_gltf_texture *t, const char *channel)
+static struct number textured(const struct maker *k, const char *what, double factor, const struct sr_gltf_texture *t,
+                              const char *channel)
 {
     if (!t->info.json || factor == 0)
         return (struct number){NULL, factor};
@@ -204,7 +221,8 @@ static struct sr_rgb rgb_of(const double v[3])
     return (struct sr_rgb){(float)fmin(v[0], 1), (float)fmin(v[1], 1), (float)fmin(v[2], 1)};
 }
 
-static struct colour textured_colour(const struct maker *k, const char *what, const double factor[3], const struct sr_gltf_texture *t)
+static struct colour textured_colour(const struct maker *k, const char *what, const double factor[3],
+                                     const struct sr_gltf_texture *t)
 {
     struct colour c = {NULL, {factor[0], factor[1], factor[2]}};
     if (t->info.json)
@@ -257,7 +275,8 @@ static const char *alpha_of(const struct maker *k)
         return NULL;
     struct number a = textured(k, "alpha", k->m->colour[3], &k->m->base_texture, "a");
     if (k->s->corner_colours) {
-        const char *vertex = sr_compose_printf(to, "%s.vertex_alpha", k->s->name), *product = sr_compose_printf(to, "%s.alpha*vertex_alpha", k->s->name);
+        const char *vertex = sr_compose_printf(to, "%s.vertex_alpha", k->s->name),
+                   *product = sr_compose_printf(to, "%s.alpha*vertex_alpha", k->s->name);
         if (sr_gltf_is_new(k->g, product)) {
             put_corners(k);
             sr_compose_int(to, "component", 3);
@@ -332,9 +351,11 @@ static void put_roughness(const struct maker *k, struct number roughness)
         put(k, "specular_roughness", roughness, 0.3);
         return;
     }
-    double r = fmax(m->roughness, 1e-3), across = r * r, along = across + (1 - across) * m->anisotropy * m->anisotropy, ratio = across / along;
+    double r = fmax(m->roughness, 1e-3), across = r * r, along = across + (1 - across) * m->anisotropy * m->anisotropy,
+           ratio = across / along;
     if (roughness.texture || m->anisotropy_texture.info.json)
-        sr_gltf_warn(k->g, &m->at, "KHR_materials_anisotropy: strength and roughness are taken as their factors, without textures");
+        sr_gltf_warn(k->g, &m->at,
+                     "KHR_materials_anisotropy: strength and roughness are taken as their factors, without textures");
     sr_compose_float(&k->g->c, "specular_roughness_anisotropy", (float)fmin(1 - ratio, 0.95));
     sr_compose_float(&k->g->c, "specular_roughness", (float)fmin(sqrt(along / sqrt(2 / (1 + ratio * ratio))), 1));
 }
@@ -346,10 +367,12 @@ struct film {
 static struct film film_of(const struct maker *k)
 {
     const struct sr_gltf_look *m = k->m;
-    struct film f = {textured(k, "iridescence", m->film, &m->film_texture, "r"), {NULL, fmin(m->film_nm[1] * 1e-3, 10)}};
+    struct film f = {textured(k, "iridescence", m->film, &m->film_texture, "r"),
+                     {NULL, fmin(m->film_nm[1] * 1e-3, 10)}};
     if (m->film > 0 && m->film_thickness_texture.info.json) {
         double scale[3] = {(m->film_nm[1] - m->film_nm[0]) * 1e-3};
-        f.um.texture = sr_gltf_texelmap(k->g, k->s, &m->film_thickness_texture, "iridescence_thickness", "g", scale, m->film_nm[0] * 1e-3, false);
+        f.um.texture = sr_gltf_texelmap(k->g, k->s, &m->film_thickness_texture, "iridescence_thickness", "g", scale,
+                                        m->film_nm[0] * 1e-3, false);
     }
     return f;
 }
@@ -385,7 +408,8 @@ static void make_material(const struct maker *k)
         specular_colour = textured_colour(k, "specular_color", m->specular_colour, &m->gloss_texture);
         specular = (struct number){NULL, m->specular};
     } else {
-        roughness = m->is_glossy ? (struct number){NULL, 1 - m->gloss} : textured(k, "roughness", m->roughness, &m->metal_texture, "g");
+        roughness = m->is_glossy ? (struct number){NULL, 1 - m->gloss}
+                                 : textured(k, "roughness", m->roughness, &m->metal_texture, "g");
         double most = fmax(1, fmax(m->specular_colour[0], fmax(m->specular_colour[1], m->specular_colour[2]))), tint[3];
         for (int i = 0; i < 3; ++i)
             tint[i] = m->specular_colour[i] / most;
@@ -395,8 +419,10 @@ static void make_material(const struct maker *k)
     struct film film = film_of(k);
     struct number transmission = textured(k, "transmission", m->transmission, &m->transmission_texture, "r");
     struct number coat = textured(k, "clearcoat", m->coat, &m->coat_texture, "r");
-    struct number coat_roughness = textured(k, "clearcoat_roughness", m->coat_roughness, &m->coat_roughness_texture, "g");
-    struct number sheen_roughness = textured(k, "sheen_roughness", m->sheen_roughness, &m->sheen_roughness_texture, "a");
+    struct number coat_roughness =
+        textured(k, "clearcoat_roughness", m->coat_roughness, &m->coat_roughness_texture, "g");
+    struct number sheen_roughness =
+        textured(k, "sheen_roughness", m->sheen_roughness, &m->sheen_roughness_texture, "a");
     double most_sheen = fmin(fmax(m->sheen[0], fmax(m->sheen[1], m->sheen[2])), 1), tint[3];
     for (int i = 0; i < 3; ++i)
         tint[i] = most_sheen > 0 ? m->sheen[i] / most_sheen : 1;
@@ -414,7 +440,8 @@ static void make_material(const struct maker *k)
         else
             put(k, "specular_ior", (struct number){NULL, m->ior == 0 ? 3 : fmin(m->ior, 3)}, 1.5);
         put(k, "specular_weight", specular, 1);
-        if (specular_colour.texture || rgb_of(specular_colour.value).r != 1 || rgb_of(specular_colour.value).g != 1 || rgb_of(specular_colour.value).b != 1)
+        if (specular_colour.texture || rgb_of(specular_colour.value).r != 1 || rgb_of(specular_colour.value).g != 1 ||
+            rgb_of(specular_colour.value).b != 1)
             put_colour(k, "specular_color", &specular_colour);
     }
     if (transmission.texture || transmission.value > 0) {
@@ -443,9 +470,11 @@ static void tell_what_is_missing(struct sr_gltf *g, const struct sr_gltf_look *m
     if (m->coat > 0 && m->coat_normal_texture.info.json && m->coat_normal_texture.image1 != m->normal_texture.image1)
         sr_gltf_warn(g, &m->at, "clearcoatNormalTexture is not supported: the coat has the normal of what is below");
     if (m->dispersion > 0 && m->transmission > 0)
-        sr_gltf_warn(g, &m->at, "KHR_materials_dispersion is not supported: one index of refraction for all wavelengths");
+        sr_gltf_warn(g, &m->at,
+                     "KHR_materials_dispersion is not supported: one index of refraction for all wavelengths");
     if (m->transmission > 0 && !m->is_solid && m->roughness > 0)
-        sr_gltf_note(g, "KHR_materials_transmission", "light goes straight through thin surfaces, also through rough ones");
+        sr_gltf_note(g, "KHR_materials_transmission",
+                     "light goes straight through thin surfaces, also through rough ones");
     if (m->is_solid && m->transmission == 0)
         sr_gltf_note(g, "KHR_materials_volume", "has no meaning without transmission");
     if (m->anisotropy > 0 && m->anisotropy_rotation != 0)

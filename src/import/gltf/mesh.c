@@ -32,8 +32,8 @@ static uint32_t read_mode(struct sr_gltf *g, const struct sr_gltf_at *at)
 }
 
 /* Corners as numbers of the file's vertices. */
-static bool read_triangles(struct sr_gltf *g, const struct sr_gltf_at *at, uint32_t mode, uint32_t position_count, struct sr_arena *data,
-                           struct sr_gltf_mesh *m)
+static bool read_triangles(struct sr_gltf *g, const struct sr_gltf_at *at, uint32_t mode, uint32_t position_count,
+                           struct sr_arena *data, struct sr_gltf_mesh *m)
 {
     struct sr_gltf_accessor list = sr_gltf_accessor(g, at, "indices", 1);
     if (list.count && (list.type == 5120 || list.type == 5122 || list.type == 5126))
@@ -42,13 +42,15 @@ static bool read_triangles(struct sr_gltf *g, const struct sr_gltf_at *at, uint3
     m->triangle_count = mode == 4 ? count / 3 : count < 3 ? 0 : count - 2;
     if (sr_gltf_is_well(g) && m->triangle_count == 0)
         sr_gltf_warn(g, at, "has %u vertices, which is no triangle, and is left out", count);
-    if (m->triangle_count == 0 || !(m->indices = sr_gltf_array_for(g, at, data, 3 * (uint64_t)m->triangle_count, sizeof(int32_t))))
+    if (m->triangle_count == 0 ||
+        !(m->indices = sr_gltf_array_for(g, at, data, 3 * (uint64_t)m->triangle_count, sizeof(int32_t))))
         return false;
     for (uint32_t t = 0; t < m->triangle_count; ++t)
         for (uint32_t k = 0; k < 3; ++k) {
             uint32_t corner = corner_of(mode, t, k), vertex = list.count ? sr_gltf_whole(&list, corner, 0) : corner;
             if (vertex >= position_count) {
-                sr_gltf_fail(g, &list.at, "index %u at place %u: there are %u vertices", vertex, corner, position_count);
+                sr_gltf_fail(g, &list.at, "index %u at place %u: there are %u vertices", vertex, corner,
+                             position_count);
                 return false;
             }
             m->indices[3 * (size_t)t + k] = (int32_t)vertex;
@@ -57,7 +59,8 @@ static bool read_triangles(struct sr_gltf *g, const struct sr_gltf_at *at, uint3
 }
 
 /* The file's numbers of the vertices that are used, in order; indices then count in this list. NULL: no memory. */
-static uint32_t *compact(struct sr_gltf *g, const struct sr_gltf_at *at, struct sr_arena *scratch, struct sr_gltf_mesh *m)
+static uint32_t *compact(struct sr_gltf *g, const struct sr_gltf_at *at, struct sr_arena *scratch,
+                         struct sr_gltf_mesh *m)
 {
     size_t corners = 3 * (size_t)m->triangle_count;
     int32_t lo = INT32_MAX, hi = 0;
@@ -67,7 +70,8 @@ static uint32_t *compact(struct sr_gltf *g, const struct sr_gltf_at *at, struct 
     }
     uint32_t range = (uint32_t)(hi - lo) + 1;
     int32_t *number1 = sr_gltf_array_for(g, at, scratch, range, sizeof *number1);
-    uint32_t *used = number1 ? sr_gltf_array_for(g, at, scratch, range < corners ? range : corners, sizeof *used) : NULL;
+    uint32_t *used =
+        number1 ? sr_gltf_array_for(g, at, scratch, range < corners ? range : corners, sizeof *used) : NULL;
     if (!used)
         return NULL;
     for (size_t i = 0; i < corners; ++i)
@@ -92,18 +96,21 @@ struct reader {
     uint32_t position_count;
 };
 
-static struct sr_gltf_accessor open_attribute(struct reader *r, const struct sr_gltf_at *attributes, const char *name, uint32_t components)
+static struct sr_gltf_accessor open_attribute(struct reader *r, const struct sr_gltf_at *attributes, const char *name,
+                                              uint32_t components)
 {
     struct sr_gltf_accessor a = sr_gltf_accessor(r->g, attributes, name, components);
     if (a.count && a.count < r->position_count) {
-        sr_gltf_fail(r->g, &a.at, "has %u elements as %s, where there are %u vertices", a.count, name, r->position_count);
+        sr_gltf_fail(r->g, &a.at, "has %u elements as %s, where there are %u vertices", a.count, name,
+                     r->position_count);
         a.count = 0;
     }
     return a;
 }
 
 /* Three numbers a vertex, morphed. wide: tangents have a fourth, which is left. NULL: the file has none. */
-static sr_vec3 *read_vectors(struct reader *r, const char *name, uint32_t components, struct sr_arena *arena, uint32_t count)
+static sr_vec3 *read_vectors(struct reader *r, const char *name, uint32_t components, struct sr_arena *arena,
+                             uint32_t count)
 {
     struct sr_gltf_accessor a = open_attribute(r, &r->attributes, name, components);
     sr_vec3 *out = a.count ? sr_gltf_array_for(r->g, &a.at, arena, count, sizeof *out) : NULL;
@@ -114,7 +121,8 @@ static sr_vec3 *read_vectors(struct reader *r, const char *name, uint32_t compon
     }
     for (uint32_t t = 0; t < r->pose->weight_count && out; ++t) {
         struct sr_gltf_at target = sr_gltf_element(r->g, &r->targets, t);
-        struct sr_gltf_accessor d = r->pose->weights[t] != 0 ? open_attribute(r, &target, name, 3) : (struct sr_gltf_accessor){0};
+        struct sr_gltf_accessor d =
+            r->pose->weights[t] != 0 ? open_attribute(r, &target, name, 3) : (struct sr_gltf_accessor){0};
         for (uint32_t i = 0; i < count && d.count; ++i) {
             sr_gltf_floats(&d, r->used[i], v);
             out[i] = sr_mad(out[i], (float)r->pose->weights[t], (sr_vec3){v[0], v[1], v[2]});
@@ -156,7 +164,8 @@ static void read_colours(struct reader *r, struct sr_arena *arena, struct sr_glt
 
 enum { JOINT_SETS = 4 };
 
-static bool blend(struct reader *r, const struct sr_gltf_accessor joints[], const struct sr_gltf_accessor weights[], uint32_t vertex, float out[3][4])
+static bool blend(struct reader *r, const struct sr_gltf_accessor joints[], const struct sr_gltf_accessor weights[],
+                  uint32_t vertex, float out[3][4])
 {
     float sum = 0, w[16];
     memset(out, 0, 12 * sizeof(float));
@@ -167,7 +176,8 @@ static bool blend(struct reader *r, const struct sr_gltf_accessor joints[], cons
             if (!(w[k] != 0))
                 continue;
             if (joint >= r->pose->joint_count) {
-                sr_gltf_fail(r->g, &joints[s].at, "joint %u of vertex %u: the skin has %u", joint, vertex, r->pose->joint_count);
+                sr_gltf_fail(r->g, &joints[s].at, "joint %u of vertex %u: the skin has %u", joint, vertex,
+                             r->pose->joint_count);
                 return false;
             }
             const float *from = &r->pose->joints[joint][0][0];
@@ -210,7 +220,8 @@ static void skin(struct reader *r, struct sr_gltf_mesh *m)
             m->S[i] = along(t, m->S[i]);
         if (!m->N)
             continue;
-        sr_vec3 a = {t[0][0], t[0][1], t[0][2]}, b = {t[1][0], t[1][1], t[1][2]}, c = {t[2][0], t[2][1], t[2][2]}, n = m->N[i];
+        sr_vec3 a = {t[0][0], t[0][1], t[0][2]}, b = {t[1][0], t[1][1], t[1][2]}, c = {t[2][0], t[2][1], t[2][2]},
+                n = m->N[i];
         sr_vec3 turned = {sr_dot(sr_cross(b, c), n), sr_dot(sr_cross(c, a), n), sr_dot(sr_cross(a, b), n)};
         m->N[i] = sr_dot(a, sr_cross(b, c)) < 0 ? sr_neg(turned) : turned;
     }
@@ -218,12 +229,15 @@ static void skin(struct reader *r, struct sr_gltf_mesh *m)
 
 /* ---- all of it ---- */
 
-bool sr_gltf_read_mesh(struct sr_gltf *g, const struct sr_gltf_at *primitive, const struct sr_gltf_pose *pose, uint32_t uv_sets,
-                       struct sr_gltf_stores stores, struct sr_gltf_mesh *out)
+bool sr_gltf_read_mesh(struct sr_gltf *g, const struct sr_gltf_at *primitive, const struct sr_gltf_pose *pose,
+                       uint32_t uv_sets, struct sr_gltf_stores stores, struct sr_gltf_mesh *out)
 {
     *out = (struct sr_gltf_mesh){0};
     struct sr_gltf_at draco = sr_gltf_extension(g, primitive, "KHR_draco_mesh_compression");
-    struct reader r = {.g = g, .attributes = sr_gltf_object(g, primitive, "attributes"), .targets = sr_gltf_array(g, primitive, "targets"), .pose = pose};
+    struct reader r = {.g = g,
+                       .attributes = sr_gltf_object(g, primitive, "attributes"),
+                       .targets = sr_gltf_array(g, primitive, "targets"),
+                       .pose = pose};
     uint32_t mode = read_mode(g, primitive);
     struct sr_gltf_accessor positions = sr_gltf_accessor(g, &r.attributes, "POSITION", 3);
     if (sr_gltf_is_well(g) && positions.count && draco.json && !positions.data)
@@ -238,7 +252,8 @@ bool sr_gltf_read_mesh(struct sr_gltf *g, const struct sr_gltf_at *primitive, co
     r.used = compact(g, primitive, &scratch, out);
     uint64_t scratch_B = g->made_B - made_B;
     if (pose->weight_count && sr_gltf_count(&r.targets) < pose->weight_count)
-        sr_gltf_fail(g, primitive, "has %u morph targets, and there are %u weights", sr_gltf_count(&r.targets), pose->weight_count);
+        sr_gltf_fail(g, primitive, "has %u morph targets, and there are %u weights", sr_gltf_count(&r.targets),
+                     pose->weight_count);
     if (r.used && sr_gltf_is_well(g)) {
         out->P = read_vectors(&r, "POSITION", 3, stores.words, out->vertex_count);
         out->N = read_vectors(&r, "NORMAL", 3, stores.words, out->vertex_count);

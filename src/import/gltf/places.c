@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-/* Meshes where nodes show them: as shapes of the world, or, where several nodes show one mesh in one pose, as an object and
- * its instances. What glows is of the world always, for objects cannot. Primitives of one form (forms.c) become objects that are like one another.
+/* Meshes where nodes show them: as shapes of the world, or, where several nodes show one mesh in one pose, as an object
+ * and its instances. What glows is of the world always, for objects cannot. Primitives of one form (forms.c) become
+ * objects that are like one another.
  *
  * Where a material looks for several coordinates, or the vertices have colours, each triangle gets vertices of its own,
  * with barycentric coordinates as (u, v) and its number as the face: textures find their values by these (texture
- * "attribute"). The order of the corners is such that dp/du x dp/dv is on the side that the normal map's coordinates say.
- * A mirrored placement turns neither outside nor normals (glTF 2.0, 3.7.4). */
+ * "attribute"). The order of the corners is such that dp/du x dp/dv is on the side that the normal map's coordinates
+ * say. A mirrored placement turns neither outside nor normals (glTF 2.0, 3.7.4). */
 #include "import/gltf/gltf.h"
 
 #include <string.h>
@@ -26,13 +27,15 @@ enum kind { PLAIN = 1, GLOWING = 2, FORMED = 4 };
 /* ---- tangents ---- */
 
 /* dp/du of the triangles around a vertex, summed by area. */
-static sr_vec3 *derive_tangents(struct sr_gltf *g, const struct sr_gltf_at *at, const struct sr_gltf_mesh *m, const sr_vec2 *uv)
+static sr_vec3 *derive_tangents(struct sr_gltf *g, const struct sr_gltf_at *at, const struct sr_gltf_mesh *m,
+                                const sr_vec2 *uv)
 {
     sr_vec3 *S = sr_gltf_array_for(g, at, &g->c.d->words, m->vertex_count, sizeof *S);
     for (size_t t = 0; t < m->triangle_count && S; ++t) {
         const int32_t *c = m->indices + 3 * t;
         sr_vec3 e = sr_sub(m->P[c[1]], m->P[c[0]]), f = sr_sub(m->P[c[2]], m->P[c[0]]);
-        float eu = uv[c[1]].x - uv[c[0]].x, ev = uv[c[1]].y - uv[c[0]].y, fu = uv[c[2]].x - uv[c[0]].x, fv = uv[c[2]].y - uv[c[0]].y;
+        float eu = uv[c[1]].x - uv[c[0]].x, ev = uv[c[1]].y - uv[c[0]].y, fu = uv[c[2]].x - uv[c[0]].x,
+              fv = uv[c[2]].y - uv[c[0]].y;
         float side = eu * fv - ev * fu < 0 ? -1.0f : 1.0f;
         sr_vec3 along = sr_sub(sr_scale(side * fv, e), sr_scale(side * ev, f));
         float length = sr_length(along), weight = length > 0 ? sr_length(sr_cross(e, f)) / length : 0;
@@ -54,7 +57,8 @@ static void turn_tangents(struct sr_gltf_mesh *m, float angle)
 
 /* ---- vertices of their own ---- */
 
-static void split_triangle(const struct sr_gltf_mesh *m, size_t t, const int slots[3], struct sr_gltf_mesh *to, struct sr_gltf_surface *s)
+static void split_triangle(const struct sr_gltf_mesh *m, size_t t, const int slots[3], struct sr_gltf_mesh *to,
+                           struct sr_gltf_surface *s)
 {
     static const sr_vec2 place_of_slot[3] = {{0, 0}, {1, 0}, {0, 1}};
     for (int k = 0; k < 3; ++k) {
@@ -75,8 +79,8 @@ static void split_triangle(const struct sr_gltf_mesh *m, size_t t, const int slo
     }
 }
 
-static bool split(struct sr_gltf *g, const struct sr_gltf_at *at, const struct sr_gltf_mesh *m, const sr_vec2 *sided, struct sr_gltf_mesh *to,
-                  struct sr_gltf_surface *s)
+static bool split(struct sr_gltf *g, const struct sr_gltf_at *at, const struct sr_gltf_mesh *m, const sr_vec2 *sided,
+                  struct sr_gltf_mesh *to, struct sr_gltf_surface *s)
 {
     uint64_t n = 3 * (uint64_t)m->triangle_count;
     struct sr_arena *words = &g->c.d->words, *data = g->c.d->data;
@@ -111,7 +115,8 @@ static void place_uv(sr_vec2 *uv, uint32_t count, const double u[6], bool is_emi
 {
     float lo[2] = {INFINITY, INFINITY};
     for (uint32_t i = 0; i < count; ++i) {
-        double s = u[0] * (double)uv[i].x + u[1] * (double)uv[i].y + u[2], t = u[3] * (double)uv[i].x + u[4] * (double)uv[i].y + u[5];
+        double s = u[0] * (double)uv[i].x + u[1] * (double)uv[i].y + u[2],
+               t = u[3] * (double)uv[i].x + u[4] * (double)uv[i].y + u[5];
         uv[i] = (sr_vec2){(float)s, (float)(1 - t)};
         lo[0] = sr_min(lo[0], uv[i].x);
         lo[1] = sr_min(lo[1], uv[i].y);
@@ -127,7 +132,8 @@ static void place_uv(sr_vec2 *uv, uint32_t count, const double u[6], bool is_emi
 uint32_t sr_gltf_material_of(struct sr_gltf *g, const struct sr_gltf_at *primitive)
 {
     uint32_t count = sr_gltf_root_count(g, "materials"), material1 = sr_gltf_index1(g, primitive, "material", count);
-    struct sr_gltf_at variants = sr_gltf_extension(g, primitive, "KHR_materials_variants"), mappings = sr_gltf_array(g, &variants, "mappings");
+    struct sr_gltf_at variants = sr_gltf_extension(g, primitive, "KHR_materials_variants"),
+                      mappings = sr_gltf_array(g, &variants, "mappings");
     for (uint32_t i = 0; i < sr_gltf_count(&mappings) && g->variant1; ++i) {
         struct sr_gltf_at mapping = sr_gltf_element(g, &mappings, i), list = sr_gltf_array(g, &mapping, "variants");
         for (uint32_t k = 0; k < sr_gltf_count(&list); ++k)
@@ -137,7 +143,8 @@ uint32_t sr_gltf_material_of(struct sr_gltf *g, const struct sr_gltf_at *primiti
     return material1;
 }
 
-static void add_shapes(struct place *p, const struct sr_gltf_mesh *m, const struct sr_gltf_surface *s, const char *alpha)
+static void add_shapes(struct place *p, const struct sr_gltf_mesh *m, const struct sr_gltf_surface *s,
+                       const char *alpha)
 {
     struct sr_gltf *g = p->g;
     struct sr_compose *to = &g->c;
@@ -184,7 +191,8 @@ static bool has_attribute(struct sr_gltf *g, const struct sr_gltf_at *primitive,
 }
 
 /* form: where its mesh is, or goes to; NULL: none. */
-static void add_primitive(struct place *p, const struct sr_gltf_at *primitive, uint32_t mesh, uint32_t number, struct sr_gltf_form *form)
+static void add_primitive(struct place *p, const struct sr_gltf_at *primitive, uint32_t mesh, uint32_t number,
+                          struct sr_gltf_form *form)
 {
     struct sr_gltf *g = p->g;
     uint32_t material1 = sr_gltf_material_of(g, primitive), present = 0;
@@ -196,7 +204,8 @@ static void add_primitive(struct place *p, const struct sr_gltf_at *primitive, u
             if (has_attribute(g, primitive, NULL, set))
                 present |= 1u << set;
             else if (needs.uv_sets != 1 || look.base_texture.info.json)
-                sr_gltf_warn(g, primitive, "has no TEXCOORD_%u, where textures of its material lie: they are read in one place", set);
+                sr_gltf_warn(g, primitive,
+                             "has no TEXCOORD_%u, where textures of its material lie: they are read in one place", set);
         }
     bool has_colours = has_attribute(g, primitive, "COLOR_0", 0);
     bool is_split = has_colours || (needs.uv_sets & ~(1u << needs.mesh_set));
@@ -261,7 +270,8 @@ static void add_instances(struct place *p, const char *object, struct sr_box bou
     }
 }
 
-static void place_formed(struct place *p, const struct sr_gltf_at *primitive, uint32_t mesh, uint32_t number, struct sr_gltf_form *form)
+static void place_formed(struct place *p, const struct sr_gltf_at *primitive, uint32_t mesh, uint32_t number,
+                         struct sr_gltf_form *form)
 {
     struct sr_compose *to = &p->g->c;
     struct sr_gltf_part *part = &p->g->objects[mesh].parts[number];
@@ -284,7 +294,8 @@ static void place_formed(struct place *p, const struct sr_gltf_at *primitive, ui
 }
 
 /* kinds: those that are wanted. */
-static void place_primitive(struct place *p, const struct sr_gltf_at *primitive, uint32_t mesh, uint32_t number, unsigned kinds)
+static void place_primitive(struct place *p, const struct sr_gltf_at *primitive, uint32_t mesh, uint32_t number,
+                            unsigned kinds)
 {
     struct sr_gltf_look look;
     sr_gltf_read_look(p->g, sr_gltf_material_of(p->g, primitive), &look);
@@ -332,7 +343,8 @@ static void place_object(struct place *p, uint32_t mesh)
 /* Where a node shows its mesh: once, or as EXT_mesh_gpu_instancing says. */
 static uint32_t count_places(struct sr_gltf *g, const struct sr_gltf_at *node, struct sr_gltf_accessor list[3])
 {
-    struct sr_gltf_at instancing = sr_gltf_extension(g, node, "EXT_mesh_gpu_instancing"), attributes = sr_gltf_object(g, &instancing, "attributes");
+    struct sr_gltf_at instancing = sr_gltf_extension(g, node, "EXT_mesh_gpu_instancing"),
+                      attributes = sr_gltf_object(g, &instancing, "attributes");
     list[0] = sr_gltf_accessor(g, &attributes, "TRANSLATION", 3);
     list[1] = sr_gltf_accessor(g, &attributes, "ROTATION", 4);
     list[2] = sr_gltf_accessor(g, &attributes, "SCALE", 3);
@@ -345,7 +357,8 @@ static uint32_t count_places(struct sr_gltf *g, const struct sr_gltf_at *node, s
     return count ? count : 1;
 }
 
-static struct sr_transform *read_places(struct sr_gltf *g, uint32_t node, const struct sr_gltf_at *at, struct sr_arena *arena, uint32_t *count)
+static struct sr_transform *read_places(struct sr_gltf *g, uint32_t node, const struct sr_gltf_at *at,
+                                        struct sr_arena *arena, uint32_t *count)
 {
     struct sr_gltf_accessor list[3];
     *count = count_places(g, at, list);
@@ -393,7 +406,12 @@ static void place_node(struct sr_gltf *g, uint32_t node, const struct sr_gltf_at
             places[0] = sr_transform_identity();
             count = 1;
         }
-        struct place p = {.g = g, .to_world = places, .count = count, .pose = &pose, .is_posed = has_own_pose(at), .bounds = sr_box_empty()};
+        struct place p = {.g = g,
+                          .to_world = places,
+                          .count = count,
+                          .pose = &pose,
+                          .is_posed = has_own_pose(at),
+                          .bounds = sr_box_empty()};
         if (g->objects[mesh].uses > 1 && !p.is_posed)
             place_object(&p, mesh);
         else

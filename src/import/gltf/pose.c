@@ -94,8 +94,10 @@ void sr_gltf_place_nodes(struct sr_gltf *g)
     struct sr_array stack = {0};
     if (g->nodes && scene_count) {
         if (scene_count > 1)
-            sr_log(g->c.d->log, SR_INFO, "%s: has %u scenes; scene %u is read", g->c.path, scene_count, scene1 ? scene1 - 1 : 0);
-        struct sr_gltf_at scene = sr_gltf_entry(g, "scenes", scene1 ? scene1 - 1 : 0), nodes = sr_gltf_array(g, &scene, "nodes");
+            sr_log(g->c.d->log, SR_INFO, "%s: has %u scenes; scene %u is read", g->c.path, scene_count,
+                   scene1 ? scene1 - 1 : 0);
+        struct sr_gltf_at scene = sr_gltf_entry(g, "scenes", scene1 ? scene1 - 1 : 0),
+                          nodes = sr_gltf_array(g, &scene, "nodes");
         for (uint32_t i = 0; i < sr_gltf_count(&nodes) && sr_gltf_is_well(g); ++i) {
             uint32_t node1 = sr_gltf_index1_of(g, &nodes, i, g->node_count);
             if (node1)
@@ -128,7 +130,8 @@ struct sr_transform sr_gltf_transform_of(const double m[4][4])
 
 /* ---- skins and weights ---- */
 
-static bool read_joints(struct sr_gltf *g, const struct sr_gltf_at *skin, struct sr_arena *arena, struct sr_gltf_pose *pose)
+static bool read_joints(struct sr_gltf *g, const struct sr_gltf_at *skin, struct sr_arena *arena,
+                        struct sr_gltf_pose *pose)
 {
     struct sr_gltf_at joints = sr_gltf_array(g, skin, "joints");
     uint32_t count = sr_gltf_count(&joints);
@@ -163,7 +166,8 @@ static bool read_joints(struct sr_gltf *g, const struct sr_gltf_at *skin, struct
     return out && sr_gltf_is_well(g);
 }
 
-bool sr_gltf_read_pose(struct sr_gltf *g, uint32_t node, const struct sr_gltf_at *mesh, struct sr_arena *arena, struct sr_gltf_pose *pose)
+bool sr_gltf_read_pose(struct sr_gltf *g, uint32_t node, const struct sr_gltf_at *mesh, struct sr_arena *arena,
+                       struct sr_gltf_pose *pose)
 {
     *pose = (struct sr_gltf_pose){0};
     struct sr_gltf_at at = sr_gltf_entry(g, "nodes", node), weights = sr_gltf_array(g, &at, "weights");

@@ -9,15 +9,18 @@
 /* The material variant by its name, or by its number from 1. */
 static void choose_variant(struct sr_gltf *g)
 {
-    struct sr_gltf_at root = {.json = g->root}, all = sr_gltf_extension(g, &root, "KHR_materials_variants"), list = sr_gltf_array(g, &all, "variants");
+    struct sr_gltf_at root = {.json = g->root}, all = sr_gltf_extension(g, &root, "KHR_materials_variants"),
+                      list = sr_gltf_array(g, &all, "variants");
     const char *word = g->options->variant;
     for (uint32_t i = 0; i < sr_gltf_count(&list) && sr_gltf_is_well(g); ++i) {
         struct sr_gltf_at variant = sr_gltf_element(g, &list, i);
         char *end = NULL;
-        if (word && !g->variant1 && (strcmp(word, sr_gltf_name(g, &variant)) == 0 || (strtoul(word, &end, 10) == i + 1 && *word && !*end)))
+        if (word && !g->variant1 &&
+            (strcmp(word, sr_gltf_name(g, &variant)) == 0 || (strtoul(word, &end, 10) == i + 1 && *word && !*end)))
             g->variant1 = i + 1;
         if (i < 100)
-            sr_log(g->c.d->log, SR_INFO, "%s: variant %u \"%s\"%s", g->c.path, i + 1, sr_gltf_name(g, &variant), g->variant1 == i + 1 ? ", used" : "");
+            sr_log(g->c.d->log, SR_INFO, "%s: variant %u \"%s\"%s", g->c.path, i + 1, sr_gltf_name(g, &variant),
+                   g->variant1 == i + 1 ? ", used" : "");
     }
     if (word && !g->variant1 && sr_gltf_is_well(g))
         sr_gltf_fail(g, NULL, "there is no variant \"%.60s\": the file has %u", word, sr_gltf_count(&list));
@@ -44,7 +47,8 @@ static void build(struct sr_gltf *g, const char *bytes, size_t size)
 }
 
 sr_status sr_gltf_read_bytes(const char *label, const char *bytes, size_t size, const struct sr_import_options *options,
-                             struct sr_arena *data, struct sr_log *log, struct sr_pbrt_description *out, struct sr_error *error)
+                             struct sr_arena *data, struct sr_log *log, struct sr_pbrt_description *out,
+                             struct sr_error *error)
 {
     struct sr_gltf g = {.options = options};
     sr_compose_begin(&g.c, label, data, log, out, error);
@@ -63,8 +67,8 @@ sr_status sr_gltf_read_bytes(const char *label, const char *bytes, size_t size, 
     return sr_compose_end(&g.c);
 }
 
-sr_status sr_gltf_read(const char *path, const struct sr_import_options *options, struct sr_arena *data, struct sr_log *log,
-                       struct sr_pbrt_description *out, struct sr_error *error)
+sr_status sr_gltf_read(const char *path, const struct sr_import_options *options, struct sr_arena *data,
+                       struct sr_log *log, struct sr_pbrt_description *out, struct sr_error *error)
 {
     char *bytes;
     size_t size;

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* Images, samplers and where on the surface they lie.
  *
- * The file counts v downward from the top row, pbrt upward; meshes get (u, 1 - v), after emission's own transform U if there
- * is one. With T the transform of a texture (KHR_texture_transform: scale, then rotation, then offset) a map is read at
+ * The file counts v downward from the top row, pbrt upward; meshes get (u, 1 - v), after emission's own transform U if
+ * there is one. With T the transform of a texture (KHR_texture_transform: scale, then rotation, then offset) a map is
+ * read at
  *
  *     F T U^-1 F (u, v),   F (u, v) = (u, 1 - v)
  *
@@ -60,7 +61,8 @@ const char *sr_gltf_image(struct sr_gltf *g, uint32_t image)
     if (!sr_gltf_is_well(g))
         return "";
     bool is_png = bytes.size > 4 && memcmp(bytes.data, "\x89PNG", 4) == 0;
-    const char *name = sr_compose_printf(&g->c, "%s#image%u.%s", slash ? slash + 1 : g->c.path, image, is_png ? "png" : "jpg");
+    const char *name =
+        sr_compose_printf(&g->c, "%s#image%u.%s", slash ? slash + 1 : g->c.path, image, is_png ? "png" : "jpg");
     uint8_t *copy = sr_gltf_array_for(g, &at, &g->c.d->words, bytes.size, 1);
     if (copy) {
         memcpy(copy, bytes.data, bytes.size);
@@ -81,7 +83,11 @@ static const char *wrap(struct sr_gltf *g, const struct sr_gltf_at *sampler, con
 
 struct sr_gltf_texture sr_gltf_texture(struct sr_gltf *g, const struct sr_gltf_at *material, const char *key)
 {
-    struct sr_gltf_texture t = {.info = sr_gltf_object(g, material, key), .transform = {1, 0, 0, 0, 1, 0}, .swrap = "repeat", .twrap = "repeat", .filter = "bilinear"};
+    struct sr_gltf_texture t = {.info = sr_gltf_object(g, material, key),
+                                .transform = {1, 0, 0, 0, 1, 0},
+                                .swrap = "repeat",
+                                .twrap = "repeat",
+                                .filter = "bilinear"};
     if (!t.info.json)
         return t;
     uint32_t texture1 = sr_gltf_index1(g, &t.info, "index", sr_gltf_root_count(g, "textures"));
@@ -92,7 +98,8 @@ struct sr_gltf_texture sr_gltf_texture(struct sr_gltf *g, const struct sr_gltf_a
         sr_gltf_numbers(g, &moved, "offset", 2, offset);
         sr_gltf_numbers(g, &moved, "scale", 2, scale);
         t.set = (uint32_t)sr_gltf_size(g, &moved, "texCoord", t.set, SR_GLTF_UV_SETS - 1);
-        double c = cos(angle), s = sin(angle), m[6] = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
+        double c = cos(angle), s = sin(angle),
+               m[6] = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
         memcpy(t.transform, m, sizeof m);
     }
     if (sr_gltf_is_well(g) && !texture1)
@@ -136,8 +143,8 @@ static void add_numbers(struct sr_gltf *g, const char *name, const double *value
         sr_fail(g->c.error, SR_ERROR_RESOURCE, "%s: not enough memory", g->c.path);
 }
 
-const char *sr_gltf_texelmap(struct sr_gltf *g, const struct sr_gltf_surface *s, const struct sr_gltf_texture *t, const char *what,
-                             const char *channel, const double factor[3], double offset, bool is_srgb)
+const char *sr_gltf_texelmap(struct sr_gltf *g, const struct sr_gltf_surface *s, const struct sr_gltf_texture *t,
+                             const char *what, const char *channel, const double factor[3], double offset, bool is_srgb)
 {
     static const double flip[6] = {1, 0, 0, 0, -1, 1};
     const char *name = sr_compose_printf(&g->c, "%s.%s", s->name, what), *image = sr_gltf_image(g, t->image1 - 1);
@@ -146,7 +153,8 @@ const char *sr_gltf_texelmap(struct sr_gltf *g, const struct sr_gltf_surface *s,
     double m[6];
     if (s->is_split) {
         chain(flip, t->transform, m);
-        sr_compose_floats(&g->c, SR_PBRT_POINT2, "uv", (const float *)s->corner_uv[t->set], 2 * (size_t)s->corner_count);
+        sr_compose_floats(&g->c, SR_PBRT_POINT2, "uv", (const float *)s->corner_uv[t->set],
+                          2 * (size_t)s->corner_count);
     } else {
         invert(s->uv_transform, m);
         chain(m, flip, m);

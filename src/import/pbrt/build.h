@@ -54,11 +54,11 @@ struct sr_pbrt_build {
     int threads;
     uint64_t hash;
     float shutter_open, shutter_close; // [s]
-    float edge_scale;  // [1] of "edgelength"
-    bool is_borrowing; // what is bound copies its runs, or ends before the description does: they stay where they lie
+    float edge_scale;                  // [1] of "edgelength"
+    bool is_borrowing;   // what is bound copies its runs, or ends before the description does: they stay where they lie
     float film_diagonal; // [m]
     bool is_in_world;    // a G-buffer's points
-    int depth; // of textures and materials being made
+    int depth;           // of textures and materials being made
 
     struct sr_array named_shapes;             // struct sr_pbrt_named_shape, in the order of the file
     struct sr_array images;                   // struct sr_pbrt_image
@@ -94,15 +94,16 @@ sr_status sr_pbrt_unsupported(struct sr_pbrt_build *b, const struct sr_pbrt_enti
 
 /* files.c */
 char *sr_pbrt_resolve(struct sr_pbrt_build *b, struct sr_arena *arena, const char *name, struct sr_location where);
-/* Adds to the scene's hash what is in a file that a model reads by itself; images are known by those who decode them. */
+/* Adds to the scene's hash what is in a file that a model reads by itself; images are known by those who decode them.
+ */
 void sr_pbrt_hash_file(struct sr_pbrt_build *b, const char *path);
 
 /* spectra.c: the value of a parameter as a spectrum of one kind (ALBEDO, UNBOUNDED, ILLUMINANT). */
 sr_status sr_pbrt_spectrum(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_pbrt_param *p,
                            enum sr_param_kind kind, struct sr_spd *out);
 
-/* images.c: each file is read once; path is resolved. gamma 0: sRGB, 1: linear, else the exponent of its bytes. for_good: the texels outlive
- * the import. */
+/* images.c: each file is read once; path is resolved. gamma 0: sRGB, 1: linear, else the exponent of its bytes.
+ * for_good: the texels outlive the import. */
 sr_status sr_pbrt_texels(struct sr_pbrt_build *b, const char *path, struct sr_location where, float gamma,
                          bool for_good, struct sr_texels *out);
 /* Reads the images that all late textures name, several at a time, so that sr_pbrt_texels finds them. */
@@ -124,17 +125,20 @@ sr_status sr_pbrt_materials(struct sr_pbrt_build *b, const struct sr_pbrt_param 
 /* media.c: the medium of that name, made once; none where there is no name. */
 sr_status sr_pbrt_medium(struct sr_pbrt_build *b, const char *name, struct sr_location where, struct sr_medium *out);
 
-/* uncertainties.c: those that the file declares; the one that the options name is added to its parameter, before anything is built. */
+/* uncertainties.c: those that the file declares; the one that the options name is added to its parameter, before
+ * anything is built. */
 sr_status sr_pbrt_uncertainties(struct sr_pbrt_build *b);
 
-/* curves.c: the shape of the run of curves that begins at s, in that placement; *run: how many directives it is made of. */
+/* curves.c: the shape of the run of curves that begins at s, in that placement; *run: how many directives it is made
+ * of. */
 bool sr_pbrt_is_curve(const struct sr_pbrt_shape *s);
-sr_status sr_pbrt_curves(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, const struct sr_shape_placement *placement, struct sr_shape *shape,
-                         size_t *run);
+sr_status sr_pbrt_curves(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s,
+                         const struct sr_shape_placement *placement, struct sr_shape *shape, size_t *run);
 
-/* displace.c: the mesh with vertices moved along their normals, after its edges have been made shorter than edge_length [m]. */
-sr_status sr_pbrt_displace(struct sr_ply_mesh *ply, const struct sr_transform *object_to_world, float edge_length, struct sr_texture displacement,
-                           struct sr_error *error);
+/* displace.c: the mesh with vertices moved along their normals, after its edges have been made shorter than edge_length
+ * [m]. */
+sr_status sr_pbrt_displace(struct sr_ply_mesh *ply, const struct sr_transform *object_to_world, float edge_length,
+                           struct sr_texture displacement, struct sr_error *error);
 
 /* lights.c and shapes.c add to the scene; settings.c fills the rest of the result. */
 sr_status sr_pbrt_build_lights(struct sr_pbrt_build *b);
@@ -149,14 +153,17 @@ sr_status sr_pbrt_settle_integrator(struct sr_pbrt_build *b);
 /* Tables that belong to no model of a room. */
 extern const struct sr_param sr_pbrt_option_params[];
 extern const struct sr_param sr_pbrt_spectral_params[], sr_pbrt_gbuffer_params[];
-extern const struct sr_param *const sr_pbrt_film_params, *const sr_pbrt_sampler_params, *const sr_pbrt_shape_params,
-    *const sr_pbrt_ply_params, *const sr_pbrt_material_params, *const sr_pbrt_uncertainty_params;
+extern const struct sr_param *const sr_pbrt_film_params,
+    *const sr_pbrt_sampler_params, *const sr_pbrt_shape_params, *const sr_pbrt_ply_params,
+                                                                    *const sr_pbrt_material_params,
+                                                                        *const sr_pbrt_uncertainty_params;
 
 /* lens.c: the files of a camera with a lens. */
 sr_status sr_pbrt_lens(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, struct sr_sensor_lens *lens);
 
-/* placing.c: the transform when the shutter opens (closes), into the scene's space: the world, or about b->result->origin. Those of shapes of
- * objects lead into the object's space; the camera's lead out of the world, and are turned round. */
+/* placing.c: the transform when the shutter opens (closes), into the scene's space: the world, or about
+ * b->result->origin. Those of shapes of objects lead into the object's space; the camera's lead out of the world, and
+ * are turned round. */
 enum sr_pbrt_place { SR_PBRT_TO_WORLD, SR_PBRT_TO_OBJECT, SR_PBRT_FROM_WORLD };
 struct sr_transform sr_pbrt_transform_of(const struct sr_pbrt_build *b, uint32_t index, enum sr_pbrt_place place);
 struct sr_transform sr_pbrt_transform_at_end(const struct sr_pbrt_build *b, uint32_t index, enum sr_pbrt_place place);
@@ -167,8 +174,7 @@ static inline enum sr_pbrt_place sr_pbrt_place_of(const struct sr_pbrt_shape *s)
 
 /* motion.c: whether a transform differs at the shutter's ends; and the motion between them. */
 bool sr_pbrt_moves(const struct sr_pbrt_build *b, uint32_t transform);
-sr_status sr_pbrt_motion(struct sr_pbrt_build *b, uint32_t transform, enum sr_pbrt_place place, const char *what, struct sr_location where,
-                         const struct sr_motion **out);
-
+sr_status sr_pbrt_motion(struct sr_pbrt_build *b, uint32_t transform, enum sr_pbrt_place place, const char *what,
+                         struct sr_location where, const struct sr_motion **out);
 
 #endif

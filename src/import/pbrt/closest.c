@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* A material of layers that pbrt does not know, as a coated matte body, glass or metal that it knows.
  *
- * Where it is metal in part, or a texture says where, a mix of two. Roughness r means slopes of width alpha = r^2 in all of
- * these models; pbrt is told alpha itself ("remaproughness" false), of a texture its square. Coats, sheen and tints are left out. */
+ * Where it is metal in part, or a texture says where, a mix of two. Roughness r means slopes of width alpha = r^2 in
+ * all of these models; pbrt is told alpha itself ("remaproughness" false), of a texture its square. Coats, sheen and
+ * tints are left out. */
 #include "import/pbrt/closest.h"
 
 #include "import/pbrt/statement.h"
@@ -14,12 +15,14 @@ static const struct family {
     const char *model, *colour, *metal, *rough, *clear, *eta;
     float initial_colour, initial_rough; // [1]
 } families[] = {
-    {"openpbr", "base_color", "base_metalness", "specular_roughness", "transmission_weight", "specular_ior", 0.8f, 0.3f},
+    {"openpbr", "base_color", "base_metalness", "specular_roughness", "transmission_weight", "specular_ior", 0.8f,
+     0.3f},
     {"principled", "reflectance", "metallic", "roughness", "specular_transmission", "eta", 0.5f, 0.5f},
     {"disney", "reflectance", "metallic", "roughness", "", "", 0.5f, 0.5f},
 };
-static const char *const known[] = {"diffuse", "coateddiffuse", "coatedconductor", "conductor", "dielectric", "thindielectric",
-                                    "diffusetransmission", "hair", "measured", "subsurface", "mix", "interface", "none", ""};
+static const char *const known[] = {
+    "diffuse", "coateddiffuse", "coatedconductor", "conductor", "dielectric", "thindielectric", "diffusetransmission",
+    "hair",    "measured",      "subsurface",      "mix",       "interface",  "none",           ""};
 
 struct change {
     struct sr_pbrt_description *d;
@@ -59,17 +62,22 @@ static void *keep(struct change *c, const void *data, size_t size)
 
 static void add_float(struct change *c, struct sr_pbrt_params *to, const char *name, float value)
 {
-    *add(to, NULL, name) = (struct sr_pbrt_param){.type = SR_PBRT_FLOAT, .name = name, .count = 1, .floats = keep(c, &value, sizeof value)};
+    *add(to, NULL, name) = (struct sr_pbrt_param){
+        .type = SR_PBRT_FLOAT, .name = name, .count = 1, .floats = keep(c, &value, sizeof value)};
 }
 
-static void add_word(struct change *c, struct sr_pbrt_params *to, enum sr_pbrt_type type, const char *name, const char *word)
+static void add_word(struct change *c, struct sr_pbrt_params *to, enum sr_pbrt_type type, const char *name,
+                     const char *word)
 {
-    *add(to, NULL, name) = (struct sr_pbrt_param){.type = type, .name = name, .count = 1, .strings = keep(c, &word, sizeof word)};
+    *add(to, NULL, name) =
+        (struct sr_pbrt_param){.type = type, .name = name, .count = 1, .strings = keep(c, &word, sizeof word)};
 }
 
-static void print(struct change *c, const char *word, const char *a, const char *b, const char *kind, struct sr_pbrt_params params)
+static void print(struct change *c, const char *word, const char *a, const char *b, const char *kind,
+                  struct sr_pbrt_params params)
 {
-    struct sr_pbrt_statement s = {.word = word, .strings = {a, b, kind}, .string_count = 1u + (b != NULL) + (kind != NULL), .params = params};
+    struct sr_pbrt_statement s = {
+        .word = word, .strings = {a, b, kind}, .string_count = 1u + (b != NULL) + (kind != NULL), .params = params};
     if (c->error->status == SR_OK)
         sr_pbrt_statement_print(c->out, &s);
 }
@@ -108,8 +116,8 @@ static void add_roughness(struct change *c, struct sr_pbrt_params *to)
         float value = r && r->floats ? r->floats[0] : c->family->initial_rough;
         add_float(c, to, "roughness", value * value);
     }
-    *add(to, NULL, "remaproughness") =
-        (struct sr_pbrt_param){.type = SR_PBRT_BOOL, .name = "remaproughness", .count = 1, .ints = keep(c, &(int32_t){0}, sizeof(int32_t))};
+    *add(to, NULL, "remaproughness") = (struct sr_pbrt_param){
+        .type = SR_PBRT_BOOL, .name = "remaproughness", .count = 1, .ints = keep(c, &(int32_t){0}, sizeof(int32_t))};
 }
 
 static const char *add_part(struct change *c, bool is_metal, bool is_clear, struct sr_pbrt_params *to)
@@ -123,7 +131,8 @@ static const char *add_part(struct change *c, bool is_metal, bool is_clear, stru
         add(to, colour, "reflectance");
     else if (!is_clear) {
         float grey[3] = {c->family->initial_colour, c->family->initial_colour, c->family->initial_colour};
-        *add(to, NULL, "reflectance") = (struct sr_pbrt_param){.type = SR_PBRT_RGB, .name = "reflectance", .count = 3, .floats = keep(c, grey, sizeof grey)};
+        *add(to, NULL, "reflectance") = (struct sr_pbrt_param){
+            .type = SR_PBRT_RGB, .name = "reflectance", .count = 3, .floats = keep(c, grey, sizeof grey)};
     }
     if (!is_metal && eta && eta->type == SR_PBRT_FLOAT)
         add(to, eta, "eta");
@@ -147,7 +156,8 @@ static void tell_losses(struct change *c)
         }
     }
     if (list[0])
-        sr_pbrt_warn(c->d, c->from->where, "material \"%s\": pbrt has no %s; left out: %s", c->from->name ? c->from->name : "", f->model, list);
+        sr_pbrt_warn(c->d, c->from->where, "material \"%s\": pbrt has no %s; left out: %s",
+                     c->from->name ? c->from->name : "", f->model, list);
 }
 
 /* The share of something that is no texture; a texture counts as half. */
@@ -179,13 +189,15 @@ static void change(struct change *c, struct sr_pbrt_entity *e)
         part.items[0].strings = keep(c, &model, sizeof model);
         print(c, "MakeNamedMaterial", names[i], NULL, NULL, part);
     }
-    *add(&params, NULL, "materials") = (struct sr_pbrt_param){.type = SR_PBRT_STRING_TYPE, .name = "materials", .count = 2, .strings = keep(c, names, sizeof names)};
+    *add(&params, NULL, "materials") = (struct sr_pbrt_param){
+        .type = SR_PBRT_STRING_TYPE, .name = "materials", .count = 2, .strings = keep(c, names, sizeof names)};
     add(&params, find(e, c->family->metal), "amount");
     e->model = "mix";
     e->params = params;
 }
 
-sr_status sr_pbrt_closest_material(struct sr_pbrt_description *d, struct sr_pbrt_entity *e, struct sr_print *out, struct sr_error *error)
+sr_status sr_pbrt_closest_material(struct sr_pbrt_description *d, struct sr_pbrt_entity *e, struct sr_print *out,
+                                   struct sr_error *error)
 {
     for (size_t i = 0; i < sizeof known / sizeof *known; ++i)
         if (strcmp(e->model, known[i]) == 0)

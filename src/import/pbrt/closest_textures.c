@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Textures that pbrt does not know, as the nearest that it knows: single channels of images, and images times a colour, become images
- * of their own, of 8 bits, beside the text; colours of vertices, and the products with them, are lost. */
+/* Textures that pbrt does not know, as the nearest that it knows: single channels of images, and images times a colour,
+ * become images of their own, of 8 bits, beside the text; colours of vertices, and the products with them, are lost. */
 #include "image/image.h"
 #include "import/pbrt/closest.h"
 
@@ -40,7 +40,8 @@ static void no_memory(struct baker *b)
 
 /* ---- parameters ---- */
 
-static void add(struct baker *b, struct sr_pbrt_params *to, enum sr_pbrt_type type, const char *name, const void *values, uint32_t count)
+static void add(struct baker *b, struct sr_pbrt_params *to, enum sr_pbrt_type type, const char *name,
+                const void *values, uint32_t count)
 {
     bool has_words = type == SR_PBRT_STRING_TYPE || type == SR_PBRT_TEXTURE;
     size_t size = count * (has_words ? sizeof(char *) : sizeof(float));
@@ -50,7 +51,11 @@ static void add(struct baker *b, struct sr_pbrt_params *to, enum sr_pbrt_type ty
         return;
     }
     memcpy(copy, values, size);
-    to->items[to->count++] = (struct sr_pbrt_param){.type = type, .name = name, .count = count, .strings = has_words ? copy : NULL, .floats = has_words ? NULL : copy};
+    to->items[to->count++] = (struct sr_pbrt_param){.type = type,
+                                                    .name = name,
+                                                    .count = count,
+                                                    .strings = has_words ? copy : NULL,
+                                                    .floats = has_words ? NULL : copy};
 }
 
 static struct sr_pbrt_params room(struct baker *b)
@@ -76,7 +81,8 @@ static struct sr_image *read_image(struct baker *b, const char *name, bool is_li
     struct sr_image *image = NULL;
     if (!path)
         no_memory(b);
-    else if ((memory ? sr_image_decode(name, memory->data, memory->size, encoding, &image, b->error) : sr_image_read_as(path, encoding, &image, b->error)) != SR_OK ||
+    else if ((memory ? sr_image_decode(name, memory->data, memory->size, encoding, &image, b->error)
+                     : sr_image_read_as(path, encoding, &image, b->error)) != SR_OK ||
              sr_image_to_float(image, b->error) != SR_OK) {
         sr_image_free(image);
         return NULL;
@@ -89,7 +95,8 @@ static unsigned char byte_of(float v)
     return (unsigned char)(v >= 1 ? 255 : v > 0 ? v * 255 + 0.5f : 0);
 }
 
-/* channel: 0 to 3, or 4 for the mean; negative: colours, times factor. Where cutoff is positive, 1 from there on and 0 below. */
+/* channel: 0 to 3, or 4 for the mean; negative: colours, times factor. Where cutoff is positive, 1 from there on and 0
+ * below. */
 struct recipe {
     int channel;
     float scale, offset, cutoff; // [1]
@@ -123,7 +130,8 @@ static const char *bake(struct baker *b, const struct sr_image *image, const str
     for (size_t i = 0; i < (size_t)image->width * image->height; ++i) {
         const float *p = image->floats + i * image->channel_count;
         for (int k = 0; is_colour && k < 3; ++k)
-            made->bytes[3 * i + (size_t)k] = byte_of(sr_image_encode_srgb(r->factor[k] * p[image->channel_count >= 3 ? k : 0]));
+            made->bytes[3 * i + (size_t)k] =
+                byte_of(sr_image_encode_srgb(r->factor[k] * p[image->channel_count >= 3 ? k : 0]));
         if (!is_colour)
             made->bytes[i] = byte_of(pixel(image, i, r));
     }
@@ -169,8 +177,11 @@ static bool change_texelmap(struct baker *b, struct sr_pbrt_texture *t)
     struct sr_pbrt_params params = room(b);
     const struct sr_pbrt_param *factor = find(e, "factor");
     const char *filename = word(e, "filename", ""), *encoding = word(e, "encoding", "sRGB");
-    bool is_linear = strcmp(encoding, "linear") == 0, is_tinted = factor && factor->count == 3 && !(factor->floats[0] == factor->floats[1] && factor->floats[1] == factor->floats[2]);
-    struct recipe r = {.channel = -1, .scale = number(e, "scale", 1), .offset = number(e, "offset", 0), .factor = {1, 1, 1}};
+    bool is_linear = strcmp(encoding, "linear") == 0,
+         is_tinted = factor && factor->count == 3 &&
+                     !(factor->floats[0] == factor->floats[1] && factor->floats[1] == factor->floats[2]);
+    struct recipe r = {
+        .channel = -1, .scale = number(e, "scale", 1), .offset = number(e, "offset", 0), .factor = {1, 1, 1}};
     if (t->is_float)
         for (r.channel = 0; r.channel < 4 && strcmp(channels[r.channel], word(e, "channel", "mean")) != 0;)
             ++r.channel;
@@ -226,7 +237,8 @@ static bool change_threshold(struct baker *b, struct sr_pbrt_texture *t)
 {
     const struct sr_pbrt_param *p = find(&t->entity, "tex");
     uint32_t index1 = p && p->type == SR_PBRT_TEXTURE ? sr_pbrt_names_find(&b->d->float_textures, p->strings[0]) : 0;
-    const struct sr_pbrt_entity *from = index1 ? &SR_PBRT_AT(b->d->textures, struct sr_pbrt_texture, index1 - 1)->entity : NULL;
+    const struct sr_pbrt_entity *from =
+        index1 ? &SR_PBRT_AT(b->d->textures, struct sr_pbrt_texture, index1 - 1)->entity : NULL;
     struct sr_pbrt_params params = room(b);
     if (!params.items)
         return false;
@@ -244,7 +256,8 @@ static bool change_threshold(struct baker *b, struct sr_pbrt_texture *t)
     struct recipe r = {.channel = 0, .scale = 1, .cutoff = number(&t->entity, "cutoff", 0.5f)};
     struct sr_image *image = NULL;
     const char *name = NULL;
-    if (path && sr_image_read_as(path, SR_IMAGE_LINEAR, &image, b->error) == SR_OK && sr_image_to_float(image, b->error) == SR_OK)
+    if (path && sr_image_read_as(path, SR_IMAGE_LINEAR, &image, b->error) == SR_OK &&
+        sr_image_to_float(image, b->error) == SR_OK)
         name = bake(b, image, &r, t->entity.name);
     sr_image_free(image);
     for (uint32_t i = 0; name && i < from->params.count; ++i) {
@@ -259,8 +272,8 @@ static bool change_threshold(struct baker *b, struct sr_pbrt_texture *t)
     return true;
 }
 
-sr_status sr_pbrt_closest_texture(struct sr_pbrt_description *d, struct sr_arena *arena, const char *main_path, const char *out, struct sr_pbrt_texture *t,
-                                  bool *is_made, struct sr_error *error)
+sr_status sr_pbrt_closest_texture(struct sr_pbrt_description *d, struct sr_arena *arena, const char *main_path,
+                                  const char *out, struct sr_pbrt_texture *t, bool *is_made, struct sr_error *error)
 {
     struct baker b = {.d = d, .arena = arena, .main_path = main_path, .out = out, .error = error};
     const char *model = t->entity.model;
@@ -288,7 +301,8 @@ bool sr_pbrt_is_normal_texture(const struct sr_pbrt_description *d, const char *
     for (size_t i = 0; i < d->named_materials.count; ++i) {
         const struct sr_pbrt_params *p = &SR_PBRT_AT(d->named_materials, struct sr_pbrt_entity, i)->params;
         for (uint32_t k = 0; k < p->count; ++k)
-            if (is_normal(p->items[k].name) && p->items[k].type == SR_PBRT_TEXTURE && strcmp(p->items[k].strings[0], name) == 0)
+            if (is_normal(p->items[k].name) && p->items[k].type == SR_PBRT_TEXTURE &&
+                strcmp(p->items[k].strings[0], name) == 0)
                 return true;
     }
     return false;
@@ -311,7 +325,8 @@ sr_status sr_pbrt_closest_normals(struct sr_pbrt_description *d, struct sr_pbrt_
             params.items[params.count++] = e->params.items[i];
     add(&b, &params, SR_PBRT_STRING_TYPE, "normalmap", &filename, 1);
     if (number(map, "scale", 2) != 2 || find(map, "transform") || find(map, "uv"))
-        sr_pbrt_warn(d, e->where, "material \"%s\": the scale and the place of its normal map are lost", e->name ? e->name : "");
+        sr_pbrt_warn(d, e->where, "material \"%s\": the scale and the place of its normal map are lost",
+                     e->name ? e->name : "");
     e->params = params;
     return error->status;
 }

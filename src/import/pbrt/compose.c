@@ -95,7 +95,11 @@ static struct sr_pbrt_param *add(struct sr_compose *c, enum sr_pbrt_type type, c
         sr_compose_fail(c, SR_ERROR_INPUT, "\"%s\" has %zu values: expected at most 2147483647", name, count);
     struct sr_pbrt_param *p = push(c, &c->params, sizeof *p);
     if (p)
-        *p = (struct sr_pbrt_param){.type = type, .space = SR_SRGB, .name = sr_compose_word(c, name), .where = c->where, .count = (uint32_t)count};
+        *p = (struct sr_pbrt_param){.type = type,
+                                    .space = SR_SRGB,
+                                    .name = sr_compose_word(c, name),
+                                    .where = c->where,
+                                    .count = (uint32_t)count};
     return p;
 }
 
@@ -109,7 +113,8 @@ static void *copy(struct sr_compose *c, const void *values, size_t size)
     return to;
 }
 
-void sr_compose_floats(struct sr_compose *c, enum sr_pbrt_type type, const char *name, const float *values, size_t count)
+void sr_compose_floats(struct sr_compose *c, enum sr_pbrt_type type, const char *name, const float *values,
+                       size_t count)
 {
     struct sr_pbrt_param *p = add(c, type, name, count);
     if (p)
@@ -200,7 +205,8 @@ static struct sr_pbrt_entity entity(struct sr_compose *c, const char *directive,
 
 void sr_compose_setting(struct sr_compose *c, const char *directive, const char *model)
 {
-    struct sr_pbrt_entity e = entity(c, directive, NULL, model), *settings[] = {&c->d->film, &c->d->sampler, &c->d->filter, &c->d->integrator};
+    struct sr_pbrt_entity e = entity(c, directive, NULL, model),
+                          *settings[] = {&c->d->film, &c->d->sampler, &c->d->filter, &c->d->integrator};
     for (size_t i = 0; i < sizeof settings / sizeof *settings; ++i)
         if (strcmp(settings[i]->directive, directive) == 0) {
             e.directive = settings[i]->directive;
@@ -227,7 +233,8 @@ static void add_name(struct sr_compose *c, struct sr_pbrt_names *names, const ch
 
 void sr_compose_material(struct sr_compose *c, const char *name, const char *model)
 {
-    struct sr_pbrt_entity e = entity(c, "MakeNamedMaterial", name, model), *slot = push(c, &c->d->named_materials, sizeof *slot);
+    struct sr_pbrt_entity e = entity(c, "MakeNamedMaterial", name, model),
+                          *slot = push(c, &c->d->named_materials, sizeof *slot);
     if (!slot)
         return;
     *slot = e;
@@ -245,7 +252,8 @@ void sr_compose_medium(struct sr_compose *c, const char *name, const char *model
 
 void sr_compose_texture(struct sr_compose *c, const char *name, bool is_float, const char *model)
 {
-    struct sr_pbrt_texture t = {entity(c, "Texture", name, model), is_float}, *slot = push(c, &c->d->textures, sizeof *slot);
+    struct sr_pbrt_texture t = {entity(c, "Texture", name, model), is_float},
+                           *slot = push(c, &c->d->textures, sizeof *slot);
     if (!slot)
         return;
     *slot = t;
@@ -254,7 +262,9 @@ void sr_compose_texture(struct sr_compose *c, const char *name, bool is_float, c
 
 void sr_compose_light(struct sr_compose *c, const char *model)
 {
-    struct sr_pbrt_light light = {.entity = entity(c, "LightSource", NULL, model), .outside = c->outside, .medium_where = c->where},
+    struct sr_pbrt_light light = {.entity = entity(c, "LightSource", NULL, model),
+                                  .outside = c->outside,
+                                  .medium_where = c->where},
                          *slot = push(c, &c->d->lights, sizeof *slot);
     if (slot)
         *slot = light;
@@ -262,7 +272,8 @@ void sr_compose_light(struct sr_compose *c, const char *model)
 
 uint32_t sr_compose_area_light(struct sr_compose *c)
 {
-    struct sr_pbrt_entity e = entity(c, "AreaLightSource", NULL, "diffuse"), *slot = push(c, &c->d->area_lights, sizeof *slot);
+    struct sr_pbrt_entity e = entity(c, "AreaLightSource", NULL, "diffuse"),
+                          *slot = push(c, &c->d->area_lights, sizeof *slot);
     if (!slot)
         return 0;
     *slot = e;

@@ -10,9 +10,9 @@
  *     sr_compose_ints(&c, "indices", indices, 3 * triangles);
  *     sr_compose_shape(&c, "trianglemesh");
  *
- * The first mistake sticks in the error and is what sr_compose_end returns; until then all calls are harmless. Words are
- * copied. Numbers of floats and ints stay where they are: in d->data where a scene may keep them (indices, uv, floats), in
- * d->words otherwise (P and N, which the placement of a shape copies), followed by 16 readable bytes. */
+ * The first mistake sticks in the error and is what sr_compose_end returns; until then all calls are harmless. Words
+ * are copied. Numbers of floats and ints stay where they are: in d->data where a scene may keep them (indices, uv,
+ * floats), in d->words otherwise (P and N, which the placement of a shape copies), followed by 16 readable bytes. */
 #ifndef SR_IMPORT_PBRT_COMPOSE_H
 #define SR_IMPORT_PBRT_COMPOSE_H
 
@@ -21,8 +21,8 @@
 struct sr_compose {
     struct sr_pbrt_description *d;
     struct sr_error *error;
-    const char *path;        // of the file
-    struct sr_array params;  // struct sr_pbrt_param, since the last entity
+    const char *path;       // of the file
+    struct sr_array params; // struct sr_pbrt_param, since the last entity
 
     /* the graphics state, for the caller to set; everything that is added takes what is here */
     struct sr_location where; // for messages: the file, and a line where it has lines (0: none)
@@ -55,9 +55,11 @@ void sr_compose_texture_name(struct sr_compose *c, const char *name, const char 
 void sr_compose_rgb(struct sr_compose *c, const char *name, struct sr_rgb value);
 void sr_compose_spectrum(struct sr_compose *c, const char *name, const char *spectrum); // by its name: "metal-Cu-eta"
 void sr_compose_blackbody(struct sr_compose *c, const char *name, float kelvin);
-void sr_compose_tuple(struct sr_compose *c, enum sr_pbrt_type type, const char *name, sr_vec3 value); // POINT3, VECTOR3, NORMAL
+void sr_compose_tuple(struct sr_compose *c, enum sr_pbrt_type type, const char *name,
+                      sr_vec3 value); // POINT3, VECTOR3, NORMAL
 /* Runs of count numbers (not of points), not copied: see above. */
-void sr_compose_floats(struct sr_compose *c, enum sr_pbrt_type type, const char *name, const float *values, size_t count);
+void sr_compose_floats(struct sr_compose *c, enum sr_pbrt_type type, const char *name, const float *values,
+                       size_t count);
 void sr_compose_ints(struct sr_compose *c, const char *name, const int32_t *values, size_t count);
 
 /* ---- entities: they take the parameters ---- */
@@ -73,8 +75,8 @@ void sr_compose_light(struct sr_compose *c, const char *model);
 uint32_t sr_compose_area_light(struct sr_compose *c); // "diffuse"; its number, for c->area_light1
 void sr_compose_shape(struct sr_compose *c, const char *model);
 void sr_compose_named_shape(struct sr_compose *c, const char *name, const char *model); // for meters: "#@ Name"
-uint32_t sr_compose_object(struct sr_compose *c, const char *name); // its number, for c->object1
-void sr_compose_instance(struct sr_compose *c, const char *object); // placed by c->transform
+uint32_t sr_compose_object(struct sr_compose *c, const char *name);                     // its number, for c->object1
+void sr_compose_instance(struct sr_compose *c, const char *object);                     // placed by c->transform
 
 /* A file that lies in memory: where an image is asked for by this name, these bytes are read. Not copied; d->words or
  * d->data must hold them. */

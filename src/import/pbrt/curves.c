@@ -16,27 +16,32 @@ static bool same_text(const char *a, const char *b)
 
 static bool same_alpha(const struct sr_pbrt_shape *a, const struct sr_pbrt_shape *b)
 {
-    const struct sr_pbrt_param *p = sr_pbrt_find(&a->entity.params, "alpha"), *q = sr_pbrt_find(&b->entity.params, "alpha");
+    const struct sr_pbrt_param *p = sr_pbrt_find(&a->entity.params, "alpha"),
+                               *q = sr_pbrt_find(&b->entity.params, "alpha");
     if (!p || !q || p->type != q->type || p->count != 1 || q->count != 1)
         return p == q;
-    return p->type == SR_PBRT_FLOAT ? p->floats[0] == q->floats[0] : p->type == SR_PBRT_TEXTURE && same_text(p->strings[0], q->strings[0]);
+    return p->type == SR_PBRT_FLOAT ? p->floats[0] == q->floats[0]
+                                    : p->type == SR_PBRT_TEXTURE && same_text(p->strings[0], q->strings[0]);
 }
 
 static bool same_state(const struct sr_pbrt_build *b, const struct sr_pbrt_shape *x, const struct sr_pbrt_shape *y)
 {
     uint32_t i = x->entity.transform, j = y->entity.transform;
     return !y->name && x->material.index == y->material.index && same_text(x->material.name, y->material.name) &&
-           x->area_light1 == y->area_light1 && x->object1 == y->object1 && x->reverse_orientation == y->reverse_orientation &&
-           same_text(x->inside, y->inside) && same_text(x->outside, y->outside) && same_alpha(x, y) &&
-           (i == j || memcmp(SR_PBRT_AT(b->d->transforms, struct sr_pbrt_transform, i), SR_PBRT_AT(b->d->transforms, struct sr_pbrt_transform, j),
-                             sizeof(struct sr_pbrt_transform)) == 0);
+           x->area_light1 == y->area_light1 && x->object1 == y->object1 &&
+           x->reverse_orientation == y->reverse_orientation && same_text(x->inside, y->inside) &&
+           same_text(x->outside, y->outside) && same_alpha(x, y) &&
+           (i == j ||
+            memcmp(SR_PBRT_AT(b->d->transforms, struct sr_pbrt_transform, i),
+                   SR_PBRT_AT(b->d->transforms, struct sr_pbrt_transform, j), sizeof(struct sr_pbrt_transform)) == 0);
 }
 
 static sr_status bind_curve(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, struct sr_shape_curve *curve)
 {
     struct sr_error inner = {0};
     b->is_borrowing = true;
-    sr_status status = sr_pbrt_bind(b, sr_shape_curve.params, &s->entity, (struct sr_pbrt_use){SR_PARAM_ALBEDO, false}, curve);
+    sr_status status =
+        sr_pbrt_bind(b, sr_shape_curve.params, &s->entity, (struct sr_pbrt_use){SR_PARAM_ALBEDO, false}, curve);
     b->is_borrowing = false;
     if (status == SR_OK && sr_shape_curve_segments(curve, &inner) == 0)
         return sr_pbrt_wrap(b, &s->entity, &inner);
@@ -47,8 +52,8 @@ static sr_status bind_curve(struct sr_pbrt_build *b, const struct sr_pbrt_shape 
     return status;
 }
 
-sr_status sr_pbrt_curves(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, const struct sr_shape_placement *placement, struct sr_shape *shape,
-                         size_t *run)
+sr_status sr_pbrt_curves(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s,
+                         const struct sr_shape_placement *placement, struct sr_shape *shape, size_t *run)
 {
     const struct sr_pbrt_shape *end = SR_PBRT_AT(b->d->shapes, struct sr_pbrt_shape, b->d->shapes.count);
     struct sr_array curves = {0};
@@ -70,7 +75,8 @@ sr_status sr_pbrt_curves(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s,
             *slot = curve;
     }
     struct sr_error inner = {0};
-    if (status == SR_OK && sr_shape_curves_make(curves.data, (uint32_t)curves.count, placement, b->arena, self, &inner) != SR_OK)
+    if (status == SR_OK &&
+        sr_shape_curves_make(curves.data, (uint32_t)curves.count, placement, b->arena, self, &inner) != SR_OK)
         status = sr_pbrt_wrap(b, &s->entity, &inner);
     *shape = (struct sr_shape){&sr_shape_curve, self};
     *run = curves.count;

@@ -35,11 +35,9 @@ const char *sr_pbrt_text(struct sr_pbrt_description *d, const char *text, size_t
 
 void sr_pbrt_description_free(struct sr_pbrt_description *d)
 {
-    struct sr_array *arrays[] = {&d->files,           &d->options,  &d->transforms, &d->materials,
-                                 &d->named_materials, &d->textures, &d->media,      &d->lights,
-                                 &d->area_lights,     &d->shapes,   &d->objects,    &d->instances,
-                                 &d->meters,
-                                 &d->uncertainties,       &d->memory_files};
+    struct sr_array *arrays[] = {&d->files,    &d->options,   &d->transforms, &d->materials,     &d->named_materials,
+                                 &d->textures, &d->media,     &d->lights,     &d->area_lights,   &d->shapes,
+                                 &d->objects,  &d->instances, &d->meters,     &d->uncertainties, &d->memory_files};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; ++i)
         sr_array_free(arrays[i]);
     struct sr_pbrt_names *names[] = {&d->object_names, &d->material_names, &d->medium_names, &d->float_textures,

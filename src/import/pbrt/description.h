@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-/* What a pbrt file says, before anything is made of it: a list of entities, each with its parameters and with the graphics
- * state that held where it stood. Reading fills it (parse.c, state.c), building reads it (build.c).
+/* What a pbrt file says, before anything is made of it: a list of entities, each with its parameters and with the
+ * graphics state that held where it stood. Reading fills it (parse.c, state.c), building reads it (build.c).
  *
- * Everything lives in two arenas, its own, `words`, and one that is lent to it, `data`; a scene copies what it keeps. */
+ * Everything lives in two arenas, its own, `words`, and one that is lent to it, `data`; a scene copies what it keeps.
+ */
 #ifndef SR_IMPORT_PBRT_DESCRIPTION_H
 #define SR_IMPORT_PBRT_DESCRIPTION_H
 
@@ -96,7 +97,8 @@ struct sr_pbrt_light {
 struct sr_pbrt_object {
     const char *name;
     struct sr_location where;
-    uint32_t like1; // index from 1: it has one shape, which is that of this earlier object in another material; 0: its own
+    uint32_t
+        like1; // index from 1: it has one shape, which is that of this earlier object in another material; 0: its own
 };
 struct sr_pbrt_instance {
     const char *name;
@@ -177,7 +179,8 @@ sr_status sr_pbrt_read(const char *path, struct sr_arena *data, struct sr_log *l
 sr_status sr_pbrt_read_text(const char *label, const char *text, size_t size, struct sr_arena *data, struct sr_log *log,
                             struct sr_pbrt_description *out, struct sr_error *error);
 void sr_pbrt_description_free(struct sr_pbrt_description *d);
-/* An empty scene with pbrt's defaults: materials[0] is what shapes wear without a word, transforms[0] is none at all. false: no memory. */
+/* An empty scene with pbrt's defaults: materials[0] is what shapes wear without a word, transforms[0] is none at all.
+ * false: no memory. */
 bool sr_pbrt_description_start(struct sr_pbrt_description *d, struct sr_arena *data, struct sr_log *log);
 /* NULL: there is none of that name. */
 const struct sr_pbrt_memory_file *sr_pbrt_memory_file(const struct sr_pbrt_description *d, const char *name);
@@ -215,7 +218,8 @@ void sr_pbrt_names_free(struct sr_pbrt_names *n);
 
 /* The entity's parameter of that name, whatever its type; marks it used. NULL: not given. */
 struct sr_pbrt_param *sr_pbrt_find(const struct sr_pbrt_params *params, const char *name);
-/* Values of a parameter of that name and type; the first initial value where there is none. A wrong type is an error. */
+/* Values of a parameter of that name and type; the first initial value where there is none. A wrong type is an error.
+ */
 sr_status sr_pbrt_get_float(const struct sr_pbrt_description *d, const struct sr_pbrt_params *p, const char *name,
                             float *value, struct sr_error *e);
 sr_status sr_pbrt_get_int(const struct sr_pbrt_description *d, const struct sr_pbrt_params *p, const char *name,

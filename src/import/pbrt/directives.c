@@ -256,7 +256,8 @@ static void warn_of_motion(struct sr_pbrt_parser *p)
     if (!p->has_warned_motion && memcmp(p->state.ctm.start.m, p->state.ctm.end.m, sizeof p->state.ctm.start.m) != 0) {
         p->has_warned_motion = true;
         sr_pbrt_warn(
-            p->d, p->where, "this %s moves while the shutter is open: lights, textures and media cannot, and stand as when it opens",
+            p->d, p->where,
+            "this %s moves while the shutter is open: lights, textures and media cannot, and stand as when it opens",
             p->directive);
     }
 }

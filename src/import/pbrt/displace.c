@@ -3,11 +3,12 @@
  *
  *     p' = p + d(u, v, p) n [m],  the edges of the triangles before that are shorter than edgelength in the world
  *
- * A triangle is halved at the middle of its longest edge, on which the vertices with the smaller numbers decide where several
- * are equally long (M.-C. Rivara, 1984). An edge that is too long is halved in both of its triangles, at one vertex, so that
- * what was closed stays closed. Normals of new vertices are the mean of both ends; after moving, all are those of the unit
- * normals of the triangles around (M. Pharr, W. Jakob, G. Humphreys, Physically Based Rendering, 4th ed. 2023: plymesh).
- * Limits: vertices that merely lie in the same place, along seams of (u, v), move each by its own normal. */
+ * A triangle is halved at the middle of its longest edge, on which the vertices with the smaller numbers decide where
+ * several are equally long (M.-C. Rivara, 1984). An edge that is too long is halved in both of its triangles, at one
+ * vertex, so that what was closed stays closed. Normals of new vertices are the mean of both ends; after moving, all
+ * are those of the unit normals of the triangles around (M. Pharr, W. Jakob, G. Humphreys, Physically Based Rendering,
+ * 4th ed. 2023: plymesh). Limits: vertices that merely lie in the same place, along seams of (u, v), move each by its
+ * own normal. */
 #include "import/pbrt/build.h"
 
 #include <string.h>
@@ -176,13 +177,16 @@ static bool dice_all(struct dicing *m, const struct sr_ply_mesh *ply)
     return is_whole;
 }
 
-/* Triangles that there will be at least: one with edges below e has less than sqrt(3)/4 e^2, and a long one is cut often. */
+/* Triangles that there will be at least: one with edges below e has less than sqrt(3)/4 e^2, and a long one is cut
+ * often. */
 static double least_triangles(const struct sr_ply_mesh *ply, const struct sr_transform *to_world, double edge)
 {
     double sum = 0;
     for (uint32_t i = 0; i < ply->triangle_count + ply->quad_count; ++i) {
-        const int32_t *v = i < ply->triangle_count ? ply->triangles + 3 * (size_t)i : ply->quads + 4 * (size_t)(i - ply->triangle_count);
-        sr_vec3 a = sr_transform_point(to_world, ply->P[v[0]]), b = sr_transform_point(to_world, ply->P[v[1]]), c = sr_transform_point(to_world, ply->P[v[2]]);
+        const int32_t *v = i < ply->triangle_count ? ply->triangles + 3 * (size_t)i
+                                                   : ply->quads + 4 * (size_t)(i - ply->triangle_count);
+        sr_vec3 a = sr_transform_point(to_world, ply->P[v[0]]), b = sr_transform_point(to_world, ply->P[v[1]]),
+                c = sr_transform_point(to_world, ply->P[v[2]]);
         sr_vec3 e = sr_sub(b, a), f = sr_sub(c, a);
         double area = 0.5 * (double)sr_length(sr_cross(e, f)), longest = (double)sr_max(sr_length(e), sr_length(f));
         sum += fmax(area / (0.4331 * edge * edge), longest / edge);
@@ -212,7 +216,13 @@ static void move_vertices(struct dicing *m, struct sr_texture displacement)
         sr_vec3 n = sr_transform_normal(m->to_world, N[i]);
         n = sr_length2(n) > 0 ? sr_normalize(n) : (sr_vec3){0, 0, 1};
         struct sr_frame f = sr_frame_from_z(n);
-        struct sr_point x = {.p = sr_transform_point(m->to_world, P[i]), .n = n, .ns = n, .dpdu = f.x, .dpdv = f.y, .dpdus = f.x, .uv = uv[i]};
+        struct sr_point x = {.p = sr_transform_point(m->to_world, P[i]),
+                             .n = n,
+                             .ns = n,
+                             .dpdu = f.x,
+                             .dpdv = f.y,
+                             .dpdus = f.x,
+                             .uv = uv[i]};
         P[i] = sr_mad(P[i], sr_texture_float(displacement, &x), N[i]);
     }
 }
@@ -248,30 +258,36 @@ static bool is_finite(const sr_vec3 *P, const struct sr_transform *t, uint32_t c
     return true;
 }
 
-sr_status sr_pbrt_displace(struct sr_ply_mesh *ply, const struct sr_transform *object_to_world, float edge_length, struct sr_texture displacement,
-                           struct sr_error *error)
+sr_status sr_pbrt_displace(struct sr_ply_mesh *ply, const struct sr_transform *object_to_world, float edge_length,
+                           struct sr_texture displacement, struct sr_error *error)
 {
     if (!ply->uv)
-        return sr_fail(error, SR_ERROR_INPUT, "\"displacement\" needs texture coordinates (u and v, or s and t) of the vertices");
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "\"displacement\" needs texture coordinates (u and v, or s and t) of the vertices");
     if (!(edge_length > 0))
-        return sr_fail(error, SR_ERROR_INPUT, "\"edgelength\" is %g, expected a positive number of metres", (double)edge_length);
+        return sr_fail(error, SR_ERROR_INPUT, "\"edgelength\" is %g, expected a positive number of metres",
+                       (double)edge_length);
     if (!is_finite(ply->P, object_to_world, ply->vertex_count))
         return sr_fail(error, SR_ERROR_INPUT, "a mesh with \"displacement\" must have finite vertices");
     double least = least_triangles(ply, object_to_world, (double)edge_length);
     if (!(least < MAX_TRIANGLES))
-        return sr_fail(error, SR_ERROR_INPUT, "\"edgelength\" %g is too short for this mesh: it makes more than %.3g triangles, expected at most %d",
-                       (double)edge_length, least, MAX_TRIANGLES);
+        return sr_fail(
+            error, SR_ERROR_INPUT,
+            "\"edgelength\" %g is too short for this mesh: it makes more than %.3g triangles, expected at most %d",
+            (double)edge_length, least, MAX_TRIANGLES);
     struct dicing m = {.to_world = object_to_world, .longest2 = (double)edge_length * (double)edge_length};
     uint32_t n = ply->vertex_count;
     bool is_whole = push_all(&m.P, ply->P, n, sizeof(sr_vec3)) && push_all(&m.N, ply->N, n, sizeof(sr_vec3)) &&
-                    push_all(&m.uv, ply->uv, n, sizeof(sr_vec2)) && (ply->N || find_first_normals(&m, ply)) && dice_all(&m, ply);
+                    push_all(&m.uv, ply->uv, n, sizeof(sr_vec2)) && (ply->N || find_first_normals(&m, ply)) &&
+                    dice_all(&m, ply);
     if (is_whole) {
         move_vertices(&m, displacement);
         find_normals(&m);
         is_whole = finish(&m, ply);
     }
     if (!is_whole)
-        sr_fail(error, m.trouble ? SR_ERROR_INPUT : SR_ERROR_RESOURCE, "%s", m.trouble ? m.trouble : "not enough memory for the displaced mesh");
+        sr_fail(error, m.trouble ? SR_ERROR_INPUT : SR_ERROR_RESOURCE, "%s",
+                m.trouble ? m.trouble : "not enough memory for the displaced mesh");
     sr_array_free(&m.P);
     sr_array_free(&m.N);
     sr_array_free(&m.uv);

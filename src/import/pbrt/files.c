@@ -4,7 +4,8 @@
 
 #include <string.h>
 
-/* A file in memory has its name as it is. From the folder of the first scene file; where nothing is there, from the folder of the file that names it. */
+/* A file in memory has its name as it is. From the folder of the first scene file; where nothing is there, from the
+ * folder of the file that names it. */
 char *sr_pbrt_resolve(struct sr_pbrt_build *b, struct sr_arena *arena, const char *name, struct sr_location where)
 {
     if (sr_pbrt_memory_file(b->d, name))

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* A pbrt file, anew: the same directives in the same order with the same names and comments, in one form.
  *
- * Statement by statement, so that memory does not grow with the scene but for the text. Comments within a statement go before
- * it, directives in comments #@ behind it, where they were read as well. */
+ * Statement by statement, so that memory does not grow with the scene but for the text. Comments within a statement go
+ * before it, directives in comments #@ behind it, where they were read as well. */
 #include "import/pbrt/format.h"
 
 #include "import/pbrt/statement.h"
@@ -44,13 +44,15 @@ static const char *find_file(struct formatter *f, const char *name, struct sr_lo
 
 static const char *moved(struct formatter *f, const char *name, struct sr_location where)
 {
-    const char *path = f->is_moved && name[0] && name[0] != '/' ? find_file(f, name, where) : NULL, *text = path ? sr_path_seen_from(&f->data, f->o->out, path) : NULL;
+    const char *path = f->is_moved && name[0] && name[0] != '/' ? find_file(f, name, where) : NULL,
+               *text = path ? sr_path_seen_from(&f->data, f->o->out, path) : NULL;
     return text ? text : name;
 }
 
 static bool names_file(const struct sr_pbrt_statement *s, const struct sr_pbrt_param *p)
 {
-    static const char *const names[] = {"filename", "normalmap", "lensfile", "emissionfilename", "aperture", "mapname", "bsdffile"};
+    static const char *const names[] = {"filename", "normalmap", "lensfile", "emissionfilename",
+                                        "aperture", "mapname",   "bsdffile"};
     if (p->type == SR_PBRT_SPECTRUM)
         return p->is_text && sr_spd_named(p->strings[0]).kind == SR_SPD_NONE;
     if (p->type != SR_PBRT_STRING_TYPE || p->count != 1 || strcmp(s->word, "Film") == 0)
@@ -80,7 +82,8 @@ static sr_status move_names(struct formatter *f, struct sr_pbrt_statement *s)
 static sr_status set_mesh_apart(struct formatter *f, struct sr_pbrt_statement *s)
 {
     struct sr_print_mesh mesh;
-    if (!f->o->ply_above || strcmp(s->word, "Shape") != 0 || !sr_print_is_mesh(s->strings[0], &s->params, f->o->ply_above, &mesh))
+    if (!f->o->ply_above || strcmp(s->word, "Shape") != 0 ||
+        !sr_print_is_mesh(s->strings[0], &s->params, f->o->ply_above, &mesh))
         return SR_OK;
     const char *name = sr_convert_mesh_name(&f->data, f->o->out, ++f->mesh_count);
     return name ? sr_print_mesh_apart(&f->d, name, &mesh, &s->strings[0], &s->params, f->p.error) : no_memory(f);
@@ -96,11 +99,13 @@ static sr_status include(struct formatter *f, const char *name, struct sr_locati
     if (!kept)
         return no_memory(f);
     if (f->nesting >= MAX_DEPTH)
-        return sr_pbrt_fail(&f->d, where, f->p.error, SR_ERROR_INPUT, "\"%s\": files are nested more than %d deep", name, MAX_DEPTH);
+        return sr_pbrt_fail(&f->d, where, f->p.error, SR_ERROR_INPUT, "\"%s\": files are nested more than %d deep",
+                            name, MAX_DEPTH);
     for (size_t i = 0; i < f->d.files.count; ++i) {
         const struct sr_pbrt_file *file = *SR_PBRT_AT(f->d.files, struct sr_pbrt_file *, i);
         if (file->is_open && strcmp(file->path, kept) == 0)
-            return sr_pbrt_fail(&f->d, where, f->p.error, SR_ERROR_INPUT, "\"%s\": this file is being read already, it includes itself", name);
+            return sr_pbrt_fail(&f->d, where, f->p.error, SR_ERROR_INPUT,
+                                "\"%s\": this file is being read already, it includes itself", name);
     }
     int depth = f->out->depth;
     if (is_import) { // what it changes ends with it
@@ -110,7 +115,8 @@ static sr_status include(struct formatter *f, const char *name, struct sr_locati
     }
     sr_status status = format_file(f, kept, where);
     if (is_import && status == SR_OK && f->out->depth != depth + 1)
-        return sr_pbrt_fail(&f->d, where, f->p.error, SR_ERROR_INPUT, "Import \"%s\": expected as many AttributeEnd as AttributeBegin in the file", name);
+        return sr_pbrt_fail(&f->d, where, f->p.error, SR_ERROR_INPUT,
+                            "Import \"%s\": expected as many AttributeEnd as AttributeBegin in the file", name);
     if (is_import) {
         --f->out->depth;
         sr_print_line(f->out, 0);
@@ -150,7 +156,8 @@ static sr_status print_statement(struct formatter *f, struct sr_pbrt_statement *
         return status;
     bool is_world = strcmp(s->word, "WorldBegin") == 0;
     if (ends_with(s->word, "End") && --f->out->depth < 0)
-        return sr_pbrt_fail(&f->d, s->where, f->p.error, SR_ERROR_INPUT, "%s without %.*sBegin before it", s->word, (int)strlen(s->word) - 3, s->word);
+        return sr_pbrt_fail(&f->d, s->where, f->p.error, SR_ERROR_INPUT, "%s without %.*sBegin before it", s->word,
+                            (int)strlen(s->word) - 3, s->word);
     sr_pbrt_statement_print(f->out, s);
     f->may_trail = true;
     f->out->depth += ends_with(s->word, "Begin") && !is_world;
@@ -215,7 +222,8 @@ static bool is_annotation(const char *p)
 }
 
 /* The directives of a comment #@ and of those right below it; where they end. */
-static sr_status print_annotation(struct formatter *f, const char *start, const struct sr_pbrt_annotation *comment, const char **end)
+static sr_status print_annotation(struct formatter *f, const char *start, const struct sr_pbrt_annotation *comment,
+                                  const char **end)
 {
     struct sr_pbrt_annotation a = {comment->p + 2, comment->line_start, comment->line};
     struct sr_pbrt_lexer lexer = sr_pbrt_lexer_start_annotation(f->p.lexer, &a), *outer = f->p.lexer;
@@ -235,7 +243,8 @@ static sr_status print_annotation(struct formatter *f, const char *start, const 
             lexer.p = token.text + n;
             continue;
         }
-        if ((status = sr_pbrt_statement_read(&f->p, &token, true, &s)) != SR_OK || (status = print_statement(f, &s)) != SR_OK)
+        if ((status = sr_pbrt_statement_read(&f->p, &token, true, &s)) != SR_OK ||
+            (status = print_statement(f, &s)) != SR_OK)
             break;
     }
     f->p.lexer = outer;
@@ -245,7 +254,8 @@ static sr_status print_annotation(struct formatter *f, const char *start, const 
 }
 
 /* Comments that have been passed: those among a statement's words, or those behind it. */
-static sr_status print_comments(struct formatter *f, const char *start, const struct sr_pbrt_annotation *c, size_t count, bool is_behind)
+static sr_status print_comments(struct formatter *f, const char *start, const struct sr_pbrt_annotation *c,
+                                size_t count, bool is_behind)
 {
     const char *done = NULL;
     for (size_t i = 0; i < count; ++i) {
@@ -297,12 +307,14 @@ static sr_status format_text(struct formatter *f, const char *path, const char *
     sr_status status = sr_pbrt_lexer_peek(&lexer, &token, f->p.error);
     if (status == SR_OK)
         status = print_comments(f, text, comments.data, comments.count, true);
-    while (status == SR_OK && (status = sr_pbrt_lexer_next(&lexer, &token, f->p.error)) == SR_OK && token.kind != SR_PBRT_END) {
+    while (status == SR_OK && (status = sr_pbrt_lexer_next(&lexer, &token, f->p.error)) == SR_OK &&
+           token.kind != SR_PBRT_END) {
         const char *at = token.text - (token.kind == SR_PBRT_STRING);
         struct sr_pbrt_statement s;
         struct sr_pbrt_token next;
         comments.count = 0;
-        if ((status = sr_pbrt_statement_read(&f->p, &token, false, &s)) != SR_OK || (status = sr_pbrt_lexer_peek(&lexer, &next, f->p.error)) != SR_OK)
+        if ((status = sr_pbrt_statement_read(&f->p, &token, false, &s)) != SR_OK ||
+            (status = sr_pbrt_lexer_peek(&lexer, &next, f->p.error)) != SR_OK)
             break;
         if (has_blank_line_before(text, at))
             print_blank_line(f->out);
@@ -327,7 +339,8 @@ static sr_status format_text(struct formatter *f, const char *path, const char *
 
 static sr_status format_file(struct formatter *f, const char *path, struct sr_location from)
 {
-    struct sr_pbrt_file **slot = sr_array_push(&f->d.files, sizeof *slot), *file = sr_arena_alloc(&f->keep, sizeof *file);
+    struct sr_pbrt_file **slot = sr_array_push(&f->d.files, sizeof *slot),
+                        *file = sr_arena_alloc(&f->keep, sizeof *file);
     char *text;
     size_t size;
     struct sr_error error = {0};
@@ -337,7 +350,8 @@ static sr_status format_file(struct formatter *f, const char *path, struct sr_lo
     *file = (struct sr_pbrt_file){.path = path, .from = from, .is_open = true};
     sr_status status = sr_file_read(path, max_text_B, &text, &size, &error);
     if (status != SR_OK)
-        return from.file ? sr_pbrt_fail(&f->d, from, f->p.error, status, "%s", error.text) : sr_fail(f->p.error, status, "%s", error.text);
+        return from.file ? sr_pbrt_fail(&f->d, from, f->p.error, status, "%s", error.text)
+                         : sr_fail(f->p.error, status, "%s", error.text);
     ++f->nesting;
     status = format_text(f, path, text, size);
     --f->nesting;
@@ -346,7 +360,8 @@ static sr_status format_file(struct formatter *f, const char *path, struct sr_lo
     return status;
 }
 
-sr_status sr_pbrt_format(const char *path, const struct sr_convert_options *o, struct sr_print *out, struct sr_log *log, struct sr_error *error)
+sr_status sr_pbrt_format(const char *path, const struct sr_convert_options *o, struct sr_print *out, struct sr_log *log,
+                         struct sr_error *error)
 {
     struct formatter f = {.o = o, .out = out};
     f.d = (struct sr_pbrt_description){.data = &f.data, .log = log};
@@ -356,7 +371,9 @@ sr_status sr_pbrt_format(const char *path, const struct sr_convert_options *o, s
     f.is_moved = !sr_path_same_folder(path, o->out);
     sr_status status = format_file(&f, path, (struct sr_location){0});
     if (status == SR_OK && out->depth != 0)
-        status = sr_fail(error, SR_ERROR_INPUT, "%s: the file ends, and not all of AttributeBegin, ObjectBegin and TransformBegin have their end", path);
+        status = sr_fail(
+            error, SR_ERROR_INPUT,
+            "%s: the file ends, and not all of AttributeBegin, ObjectBegin and TransformBegin have their end", path);
     sr_array_free(&f.upgrade.renamed);
     sr_pbrt_scratch_free(&f.p.scratch);
     sr_arena_free(&f.data);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* What a realistic camera has in files: the surfaces of its lens, and the shape of its aperture.
  *
- * A lens file has four numbers for each surface, from the front to the rear: radius of curvature [mm] (0: the stop), distance to
- * the next surface or to the film [mm], index of what is behind it (0: air), diameter [mm]; # begins a comment. The aperture's
- * image is scaled so that its mean is pi / 4, that of the disk in its square. */
+ * A lens file has four numbers for each surface, from the front to the rear: radius of curvature [mm] (0: the stop),
+ * distance to the next surface or to the film [mm], index of what is behind it (0: air), diameter [mm]; # begins a
+ * comment. The aperture's image is scaled so that its mean is pi / 4, that of the disk in its square. */
 #include "import/number.h"
 #include "import/pbrt/build.h"
 
@@ -11,7 +11,8 @@
 
 enum { SIDE = 256, MOST_SURFACES = 1000 };
 
-static sr_status read_surfaces(struct sr_pbrt_build *b, const char *path, struct sr_location where, struct sr_sensor_lens *lens)
+static sr_status read_surfaces(struct sr_pbrt_build *b, const char *path, struct sr_location where,
+                               struct sr_sensor_lens *lens)
 {
     char *text;
     size_t size;
@@ -48,9 +49,11 @@ static sr_status read_surfaces(struct sr_pbrt_build *b, const char *path, struct
     if (!values)
         status = sr_pbrt_no_memory(b);
     else if (bad)
-        status = sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT, "%s:%u: expected a number, of at most %d surfaces", path, line, MOST_SURFACES);
+        status = sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT, "%s:%u: expected a number, of at most %d surfaces",
+                              path, line, MOST_SURFACES);
     else if (count % 4 || count == 0)
-        status = sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT, "%s: %u numbers: expected four for each surface of the lens", path, count);
+        status = sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT,
+                              "%s: %u numbers: expected four for each surface of the lens", path, count);
     sr_free(text);
     return status;
 }
@@ -89,12 +92,15 @@ static bool draw(const char *shape, float *out)
     for (int j = 0; j < SIDE; ++j)
         for (int i = 0; i < SIDE; ++i) {
             float x = ((float)i + 0.5f) * (2.0f / SIDE) - 1, y = ((float)j + 0.5f) * (2.0f / SIDE) - 1;
-            out[j * SIDE + i] = is_gaussian ? sr_max(0, expf(-x * x - y * y) - expf(-1)) : is_square ? fabsf(x) < 0.5f && fabsf(y) < 0.5f : is_within((const float(*)[2])corner, n, x, y);
+            out[j * SIDE + i] = is_gaussian ? sr_max(0, expf(-x * x - y * y) - expf(-1))
+                                : is_square ? fabsf(x) < 0.5f && fabsf(y) < 0.5f
+                                            : is_within((const float(*)[2])corner, n, x, y);
         }
     return true;
 }
 
-static sr_status read_aperture(struct sr_pbrt_build *b, const char *name, struct sr_location where, struct sr_sensor_lens *lens)
+static sr_status read_aperture(struct sr_pbrt_build *b, const char *name, struct sr_location where,
+                               struct sr_sensor_lens *lens)
 {
     float *values = sr_arena_alloc(b->arena, SIDE * SIDE * sizeof *values);
     lens->aperture_width = lens->aperture_height = SIDE;
@@ -112,7 +118,8 @@ static sr_status read_aperture(struct sr_pbrt_build *b, const char *name, struct
         }
         uint64_t size[2] = {image->width, image->height};
         b->hash = sr_pbrt_hash(b->hash, size, sizeof size);
-        b->hash = sr_pbrt_hash(b->hash, image->floats, (size_t)image->width * image->height * image->channel_count * sizeof(float));
+        b->hash = sr_pbrt_hash(b->hash, image->floats,
+                               (size_t)image->width * image->height * image->channel_count * sizeof(float));
         int rgb[3] = {0, 0, 0};
         sr_image_find_rgb(image, rgb);
         lens->aperture_width = image->width;
@@ -121,7 +128,8 @@ static sr_status read_aperture(struct sr_pbrt_build *b, const char *name, struct
         for (uint32_t y = 0; values && y < image->height; ++y)
             for (uint32_t x = 0; x < image->width; ++x) {
                 const float *p = image->floats + sr_image_index(image, x, y);
-                values[(size_t)(image->height - 1 - y) * image->width + x] = (p[rgb[0]] + p[rgb[1]] + p[rgb[2]]) / 3; // rows from below
+                values[(size_t)(image->height - 1 - y) * image->width + x] =
+                    (p[rgb[0]] + p[rgb[1]] + p[rgb[2]]) / 3; // rows from below
             }
         sr_image_free(image);
         if (!values)
@@ -132,7 +140,8 @@ static sr_status read_aperture(struct sr_pbrt_build *b, const char *name, struct
     for (size_t i = 0; i < n; ++i)
         sum += values[i] >= 0 ? (double)values[i] : (double)NAN;
     if (!(sum > 0) || !isfinite(sum))
-        return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT, "aperture \"%s\": expected an image that is somewhere bright and nowhere negative", name);
+        return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT,
+                            "aperture \"%s\": expected an image that is somewhere bright and nowhere negative", name);
     for (size_t i = 0; i < n; ++i)
         values[i] *= (float)(0.25 * 3.14159265358979323846 * (double)n / sum);
     lens->aperture = values;
@@ -145,7 +154,8 @@ sr_status sr_pbrt_lens(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, 
     const struct sr_pbrt_param *diameter = sr_pbrt_find(&e->params, "aperturediameter");
     lens->diagonal = b->film_diagonal;
     if (!file)
-        return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "Camera \"%s\": expected \"string lensfile\"", e->model);
+        return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "Camera \"%s\": expected \"string lensfile\"",
+                            e->model);
     const char *path = sr_pbrt_resolve(b, b->arena, file->strings[0], file->where);
     if (!path)
         return sr_pbrt_no_memory(b);
@@ -153,7 +163,8 @@ sr_status sr_pbrt_lens(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, 
         return b->error->status;
     for (uint32_t i = 0; diameter && i < lens->surface_count; ++i)
         if (lens->surfaces[4 * i] == 0 && lens->surfaces[4 * i + 3] < diameter->floats[0])
-            sr_pbrt_warn(b->d, diameter->where, "aperturediameter %g mm is more than the stop of the lens has, which stays %g mm wide", (double)diameter->floats[0],
-                         (double)lens->surfaces[4 * i + 3]);
+            sr_pbrt_warn(b->d, diameter->where,
+                         "aperturediameter %g mm is more than the stop of the lens has, which stays %g mm wide",
+                         (double)diameter->floats[0], (double)lens->surfaces[4 * i + 3]);
     return aperture && aperture->strings[0][0] ? read_aperture(b, aperture->strings[0], aperture->where, lens) : SR_OK;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Words, strings and brackets of a pbrt file in memory; comments run from # to the end of the line. "#@" and a blank begin
- * comments that are kept: what follows are directives that are ours alone, so that other readers skip them. */
+/* Words, strings and brackets of a pbrt file in memory; comments run from # to the end of the line. "#@" and a blank
+ * begin comments that are kept: what follows are directives that are ours alone, so that other readers skip them. */
 #include "import/pbrt/lexer.h"
 
 #include "import/number.h"
@@ -26,10 +26,16 @@ struct sr_location sr_pbrt_lexer_number_where(const struct sr_pbrt_lexer *lexer)
     return location(lexer, lexer->number);
 }
 
-struct sr_pbrt_lexer sr_pbrt_lexer_start_annotation(const struct sr_pbrt_lexer *lexer, const struct sr_pbrt_annotation *a)
+struct sr_pbrt_lexer sr_pbrt_lexer_start_annotation(const struct sr_pbrt_lexer *lexer,
+                                                    const struct sr_pbrt_annotation *a)
 {
-    return (struct sr_pbrt_lexer){.file = lexer->file, .p = a->p, .end = lexer->end, .line_start = a->line_start, .line = a->line,
-                                  .arena = lexer->arena, .is_annotation = true};
+    return (struct sr_pbrt_lexer){.file = lexer->file,
+                                  .p = a->p,
+                                  .end = lexer->end,
+                                  .line_start = a->line_start,
+                                  .line = a->line,
+                                  .arena = lexer->arena,
+                                  .is_annotation = true};
 }
 
 static bool is_annotation(const char *p)

@@ -43,13 +43,14 @@ struct sr_pbrt_annotation {
 /* text must be followed by a NUL and live as long as the tokens. */
 struct sr_pbrt_lexer sr_pbrt_lexer_start(const char *file, const char *text, size_t size, struct sr_arena *arena);
 /* Over the words of that comment, and of the comments #@ on the lines right below it. */
-struct sr_pbrt_lexer sr_pbrt_lexer_start_annotation(const struct sr_pbrt_lexer *lexer, const struct sr_pbrt_annotation *a);
+struct sr_pbrt_lexer sr_pbrt_lexer_start_annotation(const struct sr_pbrt_lexer *lexer,
+                                                    const struct sr_pbrt_annotation *a);
 /* Each fills *token; the error bears file:line:column. */
 sr_status sr_pbrt_lexer_next(struct sr_pbrt_lexer *lexer, struct sr_pbrt_token *token, struct sr_error *error);
 sr_status sr_pbrt_lexer_peek(struct sr_pbrt_lexer *lexer, struct sr_pbrt_token *token, struct sr_error *error);
 
-/* Between brackets, where only numbers are wanted: the next number, without a token; or what stands there instead, which stays
- * there unless it is the closing bracket. */
+/* Between brackets, where only numbers are wanted: the next number, without a token; or what stands there instead,
+ * which stays there unless it is the closing bracket. */
 enum sr_pbrt_number_result { SR_PBRT_IS_NUMBER, SR_PBRT_IS_CLOSE, SR_PBRT_IS_OTHER };
 enum sr_pbrt_number_result sr_pbrt_lexer_number(struct sr_pbrt_lexer *lexer, double *value);
 /* The number that a word spells. */

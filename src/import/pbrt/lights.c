@@ -25,14 +25,18 @@ void sr_pbrt_tell_normalisation(struct sr_pbrt_build *b, const struct sr_pbrt_en
         if (p->type != SR_PBRT_SPECTRUM && p->type != SR_PBRT_BLACKBODY)
             continue;
         bool is_spectrum = p->type == SR_PBRT_SPECTRUM && !has_total;
-        if (is_si && is_spectrum && p->is_text && sr_spd_named(p->strings[0]).kind != SR_SPD_NONE && !b->has_warned_units) {
+        if (is_si && is_spectrum && p->is_text && sr_spd_named(p->strings[0]).kind != SR_SPD_NONE &&
+            !b->has_warned_units) {
             b->has_warned_units = true;
-            sr_pbrt_warn(b->d, p->where, "\"%s\" is a relative spectrum, and its numbers count as W m^-2 sr^-1 nm^-1 here: "
-                         "\"power\", \"illuminance\" or \"scale\" make it as bright as wanted", p->strings[0]);
+            sr_pbrt_warn(b->d, p->where,
+                         "\"%s\" is a relative spectrum, and its numbers count as W m^-2 sr^-1 nm^-1 here: "
+                         "\"power\", \"illuminance\" or \"scale\" make it as bright as wanted",
+                         p->strings[0]);
         }
         if (!is_si && is_spectrum && !p->is_text && largest_sample(p) > relative_most && !b->has_warned_units) {
             b->has_warned_units = true;
-            sr_pbrt_warn(b->d, p->where, "this spectrum looks absolute (up to %g), but only its shape counts, as in pbrt: "
+            sr_pbrt_warn(b->d, p->where,
+                         "this spectrum looks absolute (up to %g), but only its shape counts, as in pbrt: "
                          "#@ Option \"string units\" \"si\" or --units si take its numbers as W m^-2 sr^-1 nm^-1",
                          (double)largest_sample(p));
         }
@@ -66,8 +70,11 @@ static sr_status make_square(struct sr_pbrt_build *b, const struct sr_pbrt_entit
     uint32_t width = texels->width, height = texels->height;
     if (sr_light_make_square(texels, b->arena, &inner) != SR_OK)
         return sr_pbrt_wrap(b, e, &inner);
-    sr_log(b->log, SR_INFO, "%s:%d: the image of the light is %u x %u, taken as a latitude-longitude map (first row: +z) and converted to an "
-           "equal-area octahedral one of %u x %u", e->where.file, e->where.line, width, height, texels->width, texels->height);
+    sr_log(
+        b->log, SR_INFO,
+        "%s:%d: the image of the light is %u x %u, taken as a latitude-longitude map (first row: +z) and converted to an "
+        "equal-area octahedral one of %u x %u",
+        e->where.file, e->where.line, width, height, texels->width, texels->height);
     return SR_OK;
 }
 

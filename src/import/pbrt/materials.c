@@ -15,9 +15,12 @@ static const struct sr_param common_params[] = {
      "bump"},
     {SR_PARAM_FILE, "normalmap", "1", 0, 0, NAN, offsetof(struct common, normal_map),
      "directions in red, green and blue"},
-    {SR_PARAM_FLOAT_TEXTURE, "normalx", "1", -INFINITY, INFINITY, NAN, offsetof(struct common, normal[0]), "of the normal, along dp/du"},
-    {SR_PARAM_FLOAT_TEXTURE, "normaly", "1", -INFINITY, INFINITY, NAN, offsetof(struct common, normal[1]), "of the normal, on the side of dp/dv"},
-    {SR_PARAM_FLOAT_TEXTURE, "normalz", "1", -INFINITY, INFINITY, NAN, offsetof(struct common, normal[2]), "of the normal, along the smooth one"},
+    {SR_PARAM_FLOAT_TEXTURE, "normalx", "1", -INFINITY, INFINITY, NAN, offsetof(struct common, normal[0]),
+     "of the normal, along dp/du"},
+    {SR_PARAM_FLOAT_TEXTURE, "normaly", "1", -INFINITY, INFINITY, NAN, offsetof(struct common, normal[1]),
+     "of the normal, on the side of dp/dv"},
+    {SR_PARAM_FLOAT_TEXTURE, "normalz", "1", -INFINITY, INFINITY, NAN, offsetof(struct common, normal[2]),
+     "of the normal, along the smooth one"},
     {.name = NULL},
 };
 const struct sr_param *const sr_pbrt_material_params = common_params;
@@ -64,9 +67,11 @@ static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, s
                          "%s \"%s\": the normal map is grey: expected red, green and blue", e->directive, e->model);
     bool has_normal = common.normal[0].model || common.normal[1].model || common.normal[2].model;
     if (status == SR_OK && has_normal && !(common.normal[0].model && common.normal[1].model && common.normal[2].model))
-        status = sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "%s \"%s\": expected \"normalx\", \"normaly\" and \"normalz\" together",
-                              e->directive, e->model);
-    if (status == SR_OK && has_normal && !(material->normal = sr_arena_copy(b->arena, common.normal, sizeof common.normal)))
+        status = sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT,
+                              "%s \"%s\": expected \"normalx\", \"normaly\" and \"normalz\" together", e->directive,
+                              e->model);
+    if (status == SR_OK && has_normal &&
+        !(material->normal = sr_arena_copy(b->arena, common.normal, sizeof common.normal)))
         status = sr_pbrt_no_memory(b);
     if (status != SR_OK)
         return status;
@@ -134,8 +139,10 @@ sr_status sr_pbrt_materials(struct sr_pbrt_build *b, const struct sr_pbrt_param 
         if (status != SR_OK)
             return status;
         if (!list[i])
-            sr_pbrt_warn(b->d, p->where, "\"string %s\": \"%s\" is an interface: paths go through its share, but shadows are whole, as pbrt's; \"alpha\" of a shape makes true holes",
-                         p->name, p->strings[i]);
+            sr_pbrt_warn(
+                b->d, p->where,
+                "\"string %s\": \"%s\" is an interface: paths go through its share, but shadows are whole, as pbrt's; \"alpha\" of a shape makes true holes",
+                p->name, p->strings[i]);
     }
     *out = (struct sr_slice){list, p->count};
     return SR_OK;

@@ -55,7 +55,8 @@ struct sr_matrix sr_matrix_rotate(double angle_deg, const double axis[3])
 
 bool sr_matrix_look_at(const double eye[3], const double look[3], const double up[3], struct sr_matrix *out)
 {
-    double forward[3] = {look[0] - eye[0], look[1] - eye[1], look[2] - eye[2]}, u[3] = {up[0], up[1], up[2]}, right[3], upward[3];
+    double forward[3] = {look[0] - eye[0], look[1] - eye[1], look[2] - eye[2]}, u[3] = {up[0], up[1], up[2]}, right[3],
+           upward[3];
     bool defined = normalize(forward) && normalize(u);
     cross(u, forward, right);
     defined &= sqrt(right[0] * right[0] + right[1] * right[1] + right[2] * right[2]) > 1e-6;

@@ -53,32 +53,40 @@ static sr_status make_surface(struct sr_pbrt_build *b, const char *name, struct 
     return area > 0 && sr_alias_build(b->arena, areas, count, &s->alias) ? SR_OK : sr_pbrt_no_memory(b);
 }
 
-static sr_status find_surface(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_meter_model *m, struct sr_meter_common *common)
+static sr_status find_surface(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_meter_model *m,
+                              struct sr_meter_common *common)
 {
     const char *name = common->surface_name;
     if (!name)
         return SR_OK;
     struct sr_location where = sr_pbrt_find(&e->params, "surface")->where;
     if (!m->wants_surface)
-        return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT, "Meter \"%s\" does not measure on a shape", e->model);
+        return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT, "Meter \"%s\" does not measure on a shape",
+                            e->model);
     struct sr_pbrt_suggestion s = {.word = name};
     const struct sr_pbrt_named_shape *named = b->named_shapes.data;
     for (size_t i = 0; i < b->named_shapes.count; ++i) {
         if (strcmp(named[i].name, name) == 0 && named[i].is_of_object)
-            return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT, "Meter \"%s\": the shape \"%s\" belongs to an object, which has many places or none",
+            return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT,
+                                "Meter \"%s\": the shape \"%s\" belongs to an object, which has many places or none",
                                 e->model, name);
         if (strcmp(named[i].name, name) == 0 && named[i].moves)
-            return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT, "Meter \"%s\": the shape \"%s\" moves: expected one that stands", e->model, name);
+            return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT,
+                                "Meter \"%s\": the shape \"%s\" moves: expected one that stands", e->model, name);
         if (strcmp(named[i].name, name) == 0 && !named[i].shape.model->sample)
-            return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT, "Meter \"%s\": the shape \"%s\" is a %s, which turns to whoever looks: nothing is measured on it",
-                                e->model, name, named[i].shape.model->name);
+            return sr_pbrt_fail(
+                b->d, where, b->error, SR_ERROR_INPUT,
+                "Meter \"%s\": the shape \"%s\" is a %s, which turns to whoever looks: nothing is measured on it",
+                e->model, name, named[i].shape.model->name);
         if (strcmp(named[i].name, name) == 0)
             return make_surface(b, name, &common->surface);
         sr_pbrt_suggest(&s, named[i].name);
     }
     char buffer[160];
-    return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT, "Meter \"%s\": no shape has the name \"%s\", which a line #@ Name \"%s\" before it would give%s",
-                        e->model, name, name, sr_pbrt_suggestion_text(&s, buffer));
+    return sr_pbrt_fail(
+        b->d, where, b->error, SR_ERROR_INPUT,
+        "Meter \"%s\": no shape has the name \"%s\", which a line #@ Name \"%s\" before it would give%s", e->model,
+        name, name, sr_pbrt_suggestion_text(&s, buffer));
 }
 
 /* ---- meters ---- */
@@ -93,22 +101,26 @@ static sr_status unknown_meter(struct sr_pbrt_build *b, const struct sr_pbrt_ent
             strncat(list, ", ", sizeof list - strlen(list) - 1);
         strncat(list, sr_meter_models[i]->name, sizeof list - strlen(list) - 1);
     }
-    return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "Meter \"%s\": there is no such kind of meter%s; kinds: %s", e->model,
+    return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT,
+                        "Meter \"%s\": there is no such kind of meter%s; kinds: %s", e->model,
                         sr_pbrt_suggestion_text(&s, buffer), list);
 }
 
-static sr_status check_name(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_meter *meters, uint32_t count, struct sr_meter_common *common)
+static sr_status check_name(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_meter *meters,
+                            uint32_t count, struct sr_meter_common *common)
 {
     if (!common->name && !(common->name = sr_arena_printf(b->arena, "meter %u", (unsigned)count + 1)))
         return sr_pbrt_no_memory(b);
     for (uint32_t i = 0; i < count; ++i)
         if (strcmp(sr_meter_common(&meters[i])->name, common->name) == 0)
-            return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "Meter \"%s\": the name \"%s\" is taken, by line %d", e->model, common->name,
+            return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT,
+                                "Meter \"%s\": the name \"%s\" is taken, by line %d", e->model, common->name,
                                 SR_PBRT_AT(b->d->meters, struct sr_pbrt_entity, i)->where.line);
     return SR_OK;
 }
 
-static sr_status check_lambda(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, const struct sr_meter_common *common)
+static sr_status check_lambda(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e,
+                              const struct sr_meter_common *common)
 {
     const float *l = common->lambda.data;
     struct sr_spectrometer s;
@@ -117,14 +129,17 @@ static sr_status check_lambda(struct sr_pbrt_build *b, const struct sr_pbrt_enti
         return SR_OK;
     struct sr_location where = sr_pbrt_find(&e->params, "lambda")->where;
     if (common->lambda.count != 3)
-        return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT, "\"float lambda\" of Meter \"%s\" has %u values: expected first, step, last [nm]", e->model,
+        return sr_pbrt_fail(b->d, where, b->error, SR_ERROR_INPUT,
+                            "\"float lambda\" of Meter \"%s\" has %u values: expected first, step, last [nm]", e->model,
                             (unsigned)common->lambda.count);
-    if (sr_spectrometer_prepare((double)l[0], (double)l[1], (double)l[2], (double)common->fwhm, (enum sr_meter_bandpass)common->bandpass, &s, &inner) != SR_OK)
+    if (sr_spectrometer_prepare((double)l[0], (double)l[1], (double)l[2], (double)common->fwhm,
+                                (enum sr_meter_bandpass)common->bandpass, &s, &inner) != SR_OK)
         return sr_pbrt_fail(b->d, where, b->error, inner.status, "Meter \"%s\": %s", e->model, inner.text);
     return SR_OK;
 }
 
-static sr_status build_meter(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, struct sr_meter *meters, uint32_t count)
+static sr_status build_meter(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, struct sr_meter *meters,
+                             uint32_t count)
 {
     static const struct sr_pbrt_use plain = {SR_PARAM_ALBEDO, false};
     const struct sr_meter_model *m = sr_meter_model_find(e->model);

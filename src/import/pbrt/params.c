@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Reading parameter lists: the declaration, then as many values as its type asks for.
  *
- * float, point, normal, rgb, spectrum and blackbody values become floats, integers and booleans int32, the rest strings. */
+ * float, point, normal, rgb, spectrum and blackbody values become floats, integers and booleans int32, the rest
+ * strings. */
 #include "import/pbrt/params.h"
 
 #include <limits.h>
@@ -367,13 +368,15 @@ sr_status sr_pbrt_params_read(struct sr_pbrt_description *d, struct sr_pbrt_lexe
     return SR_OK;
 }
 
-sr_status sr_pbrt_option_read(struct sr_pbrt_description *d, struct sr_pbrt_lexer *lexer, struct sr_pbrt_scratch *scratch,
-                              struct sr_pbrt_params *out, struct sr_error *error)
+sr_status sr_pbrt_option_read(struct sr_pbrt_description *d, struct sr_pbrt_lexer *lexer,
+                              struct sr_pbrt_scratch *scratch, struct sr_pbrt_params *out, struct sr_error *error)
 {
     struct sr_pbrt_token token, value;
     sr_status status = sr_pbrt_lexer_peek(lexer, &token, error);
     if (status != SR_OK || token.kind != SR_PBRT_STRING || memchr(token.text, ' ', token.length))
-        return status != SR_OK ? status : sr_pbrt_params_read(d, lexer, scratch, SR_SRGB, (struct sr_pbrt_params){NULL, 0}, out, error);
+        return status != SR_OK
+                   ? status
+                   : sr_pbrt_params_read(d, lexer, scratch, SR_SRGB, (struct sr_pbrt_params){NULL, 0}, out, error);
     sr_pbrt_lexer_next(lexer, &token, error);
     struct sr_pbrt_param p = {.where = token.where, .name = sr_pbrt_text(d, token.text, token.length)};
     *out = (struct sr_pbrt_params){sr_pbrt_words(d, sizeof p), 1};
@@ -382,9 +385,16 @@ sr_status sr_pbrt_option_read(struct sr_pbrt_description *d, struct sr_pbrt_lexe
     if ((status = sr_pbrt_lexer_peek(lexer, &value, error)) != SR_OK)
         return status;
     double number;
-    bool is_number = sr_pbrt_token_number(&value, &number), is_whole = is_number && !memchr(value.text, '.', value.length);
-    p.type = value.kind == SR_PBRT_STRING ? SR_PBRT_STRING_TYPE : is_whole ? SR_PBRT_INTEGER : is_number ? SR_PBRT_FLOAT : SR_PBRT_BOOL;
-    enum storage storage = p.type == SR_PBRT_STRING_TYPE ? STRINGS : p.type == SR_PBRT_INTEGER ? INTS : p.type == SR_PBRT_FLOAT ? FLOATS : BOOLS;
+    bool is_number = sr_pbrt_token_number(&value, &number),
+         is_whole = is_number && !memchr(value.text, '.', value.length);
+    p.type = value.kind == SR_PBRT_STRING ? SR_PBRT_STRING_TYPE
+             : is_whole                   ? SR_PBRT_INTEGER
+             : is_number                  ? SR_PBRT_FLOAT
+                                          : SR_PBRT_BOOL;
+    enum storage storage = p.type == SR_PBRT_STRING_TYPE ? STRINGS
+                           : p.type == SR_PBRT_INTEGER   ? INTS
+                           : p.type == SR_PBRT_FLOAT     ? FLOATS
+                                                         : BOOLS;
     status = read_values(d, lexer, &p, &storage, scratch, error);
     if (status == SR_OK)
         status = keep_values(d, &p, storage, scratch, error);

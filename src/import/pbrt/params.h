@@ -17,7 +17,7 @@ sr_status sr_pbrt_params_read(struct sr_pbrt_description *d, struct sr_pbrt_lexe
                               struct sr_pbrt_scratch *scratch, enum sr_colour_space_id space,
                               struct sr_pbrt_params defaults, struct sr_pbrt_params *out, struct sr_error *error);
 /* The one of Option: as above, or a name without a type (pbrt's way), where the value tells the type. */
-sr_status sr_pbrt_option_read(struct sr_pbrt_description *d, struct sr_pbrt_lexer *lexer, struct sr_pbrt_scratch *scratch,
-                              struct sr_pbrt_params *out, struct sr_error *error);
+sr_status sr_pbrt_option_read(struct sr_pbrt_description *d, struct sr_pbrt_lexer *lexer,
+                              struct sr_pbrt_scratch *scratch, struct sr_pbrt_params *out, struct sr_error *error);
 
 #endif

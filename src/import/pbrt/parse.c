@@ -83,14 +83,16 @@ static void copy_word(const struct sr_pbrt_token *token, char word[64])
     word[n] = 0;
 }
 
-static const struct sr_pbrt_directive *find_directive(const struct sr_pbrt_directive *d, const struct sr_pbrt_token *token)
+static const struct sr_pbrt_directive *find_directive(const struct sr_pbrt_directive *d,
+                                                      const struct sr_pbrt_token *token)
 {
     while (d->word && (strlen(d->word) != token->length || memcmp(d->word, token->text, token->length) != 0))
         ++d;
     return d->word ? d : NULL;
 }
 
-static sr_status check_block(struct sr_pbrt_parser *p, const struct sr_pbrt_directive *d, const struct sr_pbrt_token *token)
+static sr_status check_block(struct sr_pbrt_parser *p, const struct sr_pbrt_directive *d,
+                             const struct sr_pbrt_token *token)
 {
     if (d->block & (p->d->has_world ? SR_PBRT_IN_WORLD : SR_PBRT_IN_OPTIONS))
         return SR_OK;
@@ -159,7 +161,8 @@ static sr_status read_annotation(struct sr_pbrt_parser *p, const struct sr_pbrt_
         struct sr_pbrt_suggestion s = {.word = word};
         for (d = sr_pbrt_annotations; d->word; ++d)
             sr_pbrt_suggest(&s, d->word);
-        sr_pbrt_warn(p->d, token->where, "#@ %s is not known, and stays a comment%s", word, sr_pbrt_suggestion_text(&s, buffer));
+        sr_pbrt_warn(p->d, token->where, "#@ %s is not known, and stays a comment%s", word,
+                     sr_pbrt_suggestion_text(&s, buffer));
         return skip_annotation(p->lexer, token->where.line, p->error);
     }
     if (check_block(p, d, token) != SR_OK)
@@ -280,7 +283,8 @@ static sr_status start(struct sr_pbrt_parser *p, const char *path, struct sr_are
     struct sr_matrix one = sr_matrix_identity();
     *p = (struct sr_pbrt_parser){.d = d, .error = error, .main_path = path};
     p->state = (struct sr_pbrt_state){.ctm = {one, one}, .at_start = true, .at_end = true, .space = SR_SRGB};
-    return sr_pbrt_description_start(d, data, log) ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", path);
+    return sr_pbrt_description_start(d, data, log) ? SR_OK
+                                                   : sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", path);
 }
 
 static sr_status finish(struct sr_pbrt_parser *p, sr_status status, const struct sr_pbrt_file *file)

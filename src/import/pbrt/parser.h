@@ -54,8 +54,8 @@ struct sr_pbrt_parser {
     uint32_t object1;            // being defined; 0: none
     uint32_t depth;              // of Include
     bool has_warned_transform, has_warned_motion;
-    struct sr_array annotations;     // struct sr_pbrt_annotation of the file being read, not yet looked at
-    const char *shape_name;          // of "#@ Name", for the next shape
+    struct sr_array annotations; // struct sr_pbrt_annotation of the file being read, not yet looked at
+    const char *shape_name;      // of "#@ Name", for the next shape
     struct sr_location shape_name_where;
 };
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Transforms of the description into the space in which the scene is computed.
  *
- * Coordinates are floats: at a distance of a million sizes nothing is left of what stands there. So the middle of a scene that is
- * far away becomes the origin o [m], and what leads into the world, M, becomes
+ * Coordinates are floats: at a distance of a million sizes nothing is left of what stands there. So the middle of a
+ * scene that is far away becomes the origin o [m], and what leads into the world, M, becomes
  *
  *     T(-o) M    in double, rounded once to float.
  *

@@ -222,15 +222,18 @@ static const struct sr_pbrt_param *find(const struct sr_pbrt_params *params, con
     return NULL;
 }
 
-bool sr_print_is_mesh(const char *model, const struct sr_pbrt_params *params, uint32_t more_than, struct sr_print_mesh *mesh)
+bool sr_print_is_mesh(const char *model, const struct sr_pbrt_params *params, uint32_t more_than,
+                      struct sr_print_mesh *mesh)
 {
-    const struct sr_pbrt_param *P = find(params, "P"), *N = find(params, "N"), *uv = find(params, "uv"), *indices = find(params, "indices"),
-                               *faces = find(params, "faceIndices");
+    const struct sr_pbrt_param *P = find(params, "P"), *N = find(params, "N"), *uv = find(params, "uv"),
+                               *indices = find(params, "indices"), *faces = find(params, "faceIndices");
     if (strcmp(model, "trianglemesh") != 0 || !P || !P->floats || !indices || !indices->ints || find(params, "S"))
         return false;
-    *mesh = (struct sr_print_mesh){.P = P->floats, .indices = indices->ints, .vertex_count = P->count / 3, .triangle_count = indices->count / 3};
-    if (mesh->vertex_count <= more_than || P->count % 3 || indices->count % 3 || (N && (!N->floats || N->count != P->count)) ||
-        (uv && (!uv->floats || uv->count != 2 * mesh->vertex_count)) || (faces && (!faces->ints || faces->count != mesh->triangle_count)))
+    *mesh = (struct sr_print_mesh){
+        .P = P->floats, .indices = indices->ints, .vertex_count = P->count / 3, .triangle_count = indices->count / 3};
+    if (mesh->vertex_count <= more_than || P->count % 3 || indices->count % 3 ||
+        (N && (!N->floats || N->count != P->count)) || (uv && (!uv->floats || uv->count != 2 * mesh->vertex_count)) ||
+        (faces && (!faces->ints || faces->count != mesh->triangle_count)))
         return false;
     mesh->N = N ? N->floats : NULL;
     mesh->uv = uv ? uv->floats : NULL;
@@ -253,11 +256,13 @@ static sr_status write_ply(const char *path, const struct sr_print_mesh *mesh, s
 {
     struct sr_print out = {0};
     char head[512];
-    snprintf(head, sizeof head,
-             "ply\nformat binary_little_endian 1.0\nelement vertex %u\nproperty float x\nproperty float y\nproperty float z\n%s%selement face %u\n"
-             "property list uchar int vertex_indices\n%send_header\n",
-             (unsigned)mesh->vertex_count, mesh->N ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
-             mesh->uv ? "property float u\nproperty float v\n" : "", (unsigned)mesh->triangle_count, mesh->faces ? "property int face_indices\n" : "");
+    snprintf(
+        head, sizeof head,
+        "ply\nformat binary_little_endian 1.0\nelement vertex %u\nproperty float x\nproperty float y\nproperty float z\n%s%selement face %u\n"
+        "property list uchar int vertex_indices\n%send_header\n",
+        (unsigned)mesh->vertex_count, mesh->N ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
+        mesh->uv ? "property float u\nproperty float v\n" : "", (unsigned)mesh->triangle_count,
+        mesh->faces ? "property int face_indices\n" : "");
     sr_print_word(&out, head);
     for (uint32_t i = 0; i < mesh->vertex_count; ++i) {
         put(&out, &mesh->P[3 * i], 3);
@@ -272,13 +277,14 @@ static sr_status write_ply(const char *path, const struct sr_print_mesh *mesh, s
         if (mesh->faces)
             put(&out, &mesh->faces[i], 1);
     }
-    sr_status status = out.has_failed ? sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", path) : sr_file_write(path, out.text, out.size, error);
+    sr_status status = out.has_failed ? sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", path)
+                                      : sr_file_write(path, out.text, out.size, error);
     sr_free(out.text);
     return status;
 }
 
-sr_status sr_print_mesh_apart(struct sr_pbrt_description *d, const char *path, const struct sr_print_mesh *mesh, const char **model,
-                              struct sr_pbrt_params *params, struct sr_error *error)
+sr_status sr_print_mesh_apart(struct sr_pbrt_description *d, const char *path, const struct sr_print_mesh *mesh,
+                              const char **model, struct sr_pbrt_params *params, struct sr_error *error)
 {
     static const char *const gone[] = {"P", "N", "uv", "indices", "faceIndices"};
     struct sr_pbrt_param *items = sr_pbrt_words(d, (params->count + 1) * sizeof *items);

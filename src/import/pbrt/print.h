@@ -22,7 +22,8 @@ void sr_print_quoted(struct sr_print *out, const char *text);
 void sr_print_float(struct sr_print *out, float value);
 void sr_print_double(struct sr_print *out, double value);
 double sr_print_few_digits(float value); // of the decimal that is written for it
-/* The parameters behind what stands on the line already: there if they fit, else each on a line of its own. Ends the line. */
+/* The parameters behind what stands on the line already: there if they fit, else each on a line of its own. Ends the
+ * line. */
 void sr_print_params(struct sr_print *out, const struct sr_pbrt_params *params);
 
 /* A triangle mesh as a PLY file. */
@@ -33,9 +34,10 @@ struct sr_print_mesh {
     uint32_t vertex_count, triangle_count;
 };
 /* Whether a shape is a mesh that a PLY file can hold, of more than that many vertices. */
-bool sr_print_is_mesh(const char *model, const struct sr_pbrt_params *params, uint32_t more_than, struct sr_print_mesh *mesh);
+bool sr_print_is_mesh(const char *model, const struct sr_pbrt_params *params, uint32_t more_than,
+                      struct sr_print_mesh *mesh);
 /* Writes it, and makes a shape "plymesh" of it, whose words d holds. The scene lies in the file's folder. */
-sr_status sr_print_mesh_apart(struct sr_pbrt_description *d, const char *path, const struct sr_print_mesh *mesh, const char **model,
-                              struct sr_pbrt_params *params, struct sr_error *error);
+sr_status sr_print_mesh_apart(struct sr_pbrt_description *d, const char *path, const struct sr_print_mesh *mesh,
+                              const char **model, struct sr_pbrt_params *params, struct sr_error *error);
 
 #endif

@@ -26,7 +26,8 @@ static const struct sr_param film_params[] = {
     {SR_PARAM_INT, "yresolution", "pixel", 1, 1 << 20, 720, MEMBER(height), "height"},
     {SR_PARAM_FLOATS, "cropwindow", "1", 0, 1, NAN, MEMBER(crop_window), "x0 x1 y0 y1 as shares of the picture"},
     {SR_PARAM_INTS, "pixelbounds", "pixel", 0, 1 << 20, NAN, MEMBER(pixel_bounds), "x0 x1 y0 y1"},
-    {SR_PARAM_FLOAT, "diagonal", "mm", 0, INFINITY, 35, MEMBER(diagonal), "of the film behind a realistic camera's lens"},
+    {SR_PARAM_FLOAT, "diagonal", "mm", 0, INFINITY, 35, MEMBER(diagonal),
+     "of the film behind a realistic camera's lens"},
     {SR_PARAM_FLOAT, "iso", "1", 0, INFINITY, 100, MEMBER(iso), "the picture times iso/100"},
     {SR_PARAM_FLOAT, "whitebalance", "K", 0, INFINITY, 0, MEMBER(white_balance),
      "correlated colour temperature; 0: none"},
@@ -122,12 +123,14 @@ static sr_status build_film(struct sr_pbrt_build *b)
             sr_pbrt_suggest(&near, sr_film_camera_name((int)camera1++));
         if (!sr_film_camera_name((int)camera1))
             return sr_pbrt_fail(b->d, sr_pbrt_find(&e->params, "sensor")->where, b->error, SR_ERROR_INPUT,
-                                "there is no sensor \"%s\": expected cie1931 or the name of a camera%s", f.sensor, sr_pbrt_suggestion_text(&near, buffer));
+                                "there is no sensor \"%s\": expected cie1931 or the name of a camera%s", f.sensor,
+                                sr_pbrt_suggestion_text(&near, buffer));
         ++camera1;
     }
     if (is_spectral && !(f.lambda_min < f.lambda_max))
-        return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "Film \"spectral\": lambdamin %g nm must be less than lambdamax %g nm", (double)f.lambda_min,
-                            (double)f.lambda_max);
+        return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT,
+                            "Film \"spectral\": lambdamin %g nm must be less than lambdamax %g nm",
+                            (double)f.lambda_min, (double)f.lambda_max);
     b->is_in_world = f.coordinates == 1;
     const struct sr_import_options *o = b->options;
     int32_t w = o->width ? clamp_int(o->width, 1, 1 << 20) : f.width,
@@ -285,11 +288,18 @@ static sr_status build_sampler(struct sr_pbrt_build *b)
     while (s.randomization && word < 5 && strcmp(words[word], s.randomization) != 0)
         ++word;
     if (word == 5)
-        return sr_pbrt_fail(b->d, sr_pbrt_find(&e->params, "randomization")->where, b->error, SR_ERROR_INPUT,
-                            "\"string randomization\" of Sampler \"%s\" is \"%s\": expected none, permutedigits, fastowen or owen", e->model, s.randomization);
+        return sr_pbrt_fail(
+            b->d, sr_pbrt_find(&e->params, "randomization")->where, b->error, SR_ERROR_INPUT,
+            "\"string randomization\" of Sampler \"%s\" is \"%s\": expected none, permutedigits, fastowen or owen",
+            e->model, s.randomization);
     bool is_independent = strcmp(e->model, "independent") == 0;
-    if (e->where.file && !is_independent && (strcmp(e->model, "halton") == 0 || strcmp(e->model, "stratified") == 0 || strcmp(e->model, "pmj02bn") == 0 || word == 1 || word == 2))
-        sr_log(b->log, SR_INFO, "%s:%d: Sampler \"%s\": Sobol' nets, scrambled as Owen did, take its place: the picture's mean is the same", e->where.file, e->where.line, e->model);
+    if (e->where.file && !is_independent &&
+        (strcmp(e->model, "halton") == 0 || strcmp(e->model, "stratified") == 0 || strcmp(e->model, "pmj02bn") == 0 ||
+         word == 1 || word == 2))
+        sr_log(
+            b->log, SR_INFO,
+            "%s:%d: Sampler \"%s\": Sobol' nets, scrambled as Owen did, take its place: the picture's mean is the same",
+            e->where.file, e->where.line, e->model);
     uint32_t spp = s.spp ? (uint32_t)s.spp : is_independent ? 4 : 16;
     if (strcmp(e->model, "stratified") == 0)
         spp = (uint32_t)s.x_samples * (uint32_t)s.y_samples;
@@ -319,13 +329,16 @@ static sr_status build_integrator(struct sr_pbrt_build *b, enum sr_light_choice 
     bool is_foreign = is_done_by_photons(e.model);
     if (is_foreign) {
         if (e.where.file && !other)
-            sr_log(b->log, SR_INFO, "%s:%d:%d: Integrator \"%s\": rendered by \"caustics\", path tracing with photons behind mirrors and glass",
-                   e.where.file, e.where.line, e.where.column, e.model);
+            sr_log(
+                b->log, SR_INFO,
+                "%s:%d:%d: Integrator \"%s\": rendered by \"caustics\", path tracing with photons behind mirrors and glass",
+                e.where.file, e.where.line, e.where.column, e.model);
         e.model = "caustics";
     }
     if (!other && strcmp(e.model, "function") == 0)
-        return sr_pbrt_fail(b->d, e.where, b->error, SR_ERROR_INPUT,
-                            "Integrator \"function\" makes no picture of a scene: the errors of samplers over known functions are told by `steradian converge`");
+        return sr_pbrt_fail(
+            b->d, e.where, b->error, SR_ERROR_INPUT,
+            "Integrator \"function\" makes no picture of a scene: the errors of samplers over known functions are told by `steradian converge`");
     if (other && !sr_integrator_model_find(e.model))
         e.model = "path";
     const struct sr_integrator_model *m = sr_integrator_model_find(e.model);
@@ -352,7 +365,8 @@ static sr_status build_integrator(struct sr_pbrt_build *b, enum sr_light_choice 
     struct sr_integrator own = {m, self};
     b->result->integrator = own;
     if (status == SR_OK && other)
-        status = sr_integrator_parse(is_done_by_photons(other) ? "caustics" : other, &own, b->arena, &b->result->integrator, b->error);
+        status = sr_integrator_parse(is_done_by_photons(other) ? "caustics" : other, &own, b->arena,
+                                     &b->result->integrator, b->error);
     return status;
 }
 
@@ -360,8 +374,8 @@ static sr_status build_integrator(struct sr_pbrt_build *b, enum sr_light_choice 
 
 static sr_status build_options(struct sr_pbrt_build *b)
 {
-    static const char *const harmless[] = {"rendercoordsys",    "wavefront",       "pixelstats",
-                                           "msereferenceimage", "msereferenceout"};
+    static const char *const harmless[] = {"rendercoordsys", "wavefront", "pixelstats", "msereferenceimage",
+                                           "msereferenceout"};
     b->edge_scale = 1;
     b->result->jitter_pixel = b->result->jitter_lambda = true;
     b->result->units = b->options->units;
@@ -373,7 +387,8 @@ static sr_status build_options(struct sr_pbrt_build *b)
             return sr_pbrt_fail(b->d, o->value.where, b->error, SR_ERROR_INPUT, "Option \"%s\": expected one bool",
                                 o->value.name);
         if (strcmp(o->name, "rendercoordsys") == 0)
-            b->result->stays = o->value.type == SR_PBRT_STRING_TYPE && o->value.count == 1 && strcmp(o->value.strings[0], "world") == 0;
+            b->result->stays = o->value.type == SR_PBRT_STRING_TYPE && o->value.count == 1 &&
+                               strcmp(o->value.strings[0], "world") == 0;
         if (strcmp(o->name, "disablepixeljitter") == 0)
             b->result->jitter_pixel = !is_on;
         else if (strcmp(o->name, "disablewavelengthjitter") == 0)
@@ -385,10 +400,14 @@ static sr_status build_options(struct sr_pbrt_build *b)
             if (!sr_pbrt_find(&b->d->sampler.params, "seed")) // the sampler's own word counts more
                 b->result->seed = (uint32_t)o->value.ints[0];
         } else if (strcmp(o->name, "displacementedgescale") == 0) {
-            bool is_number = o->value.count == 1 && (o->value.type == SR_PBRT_FLOAT || o->value.type == SR_PBRT_INTEGER);
-            b->edge_scale = !is_number ? 0 : o->value.type == SR_PBRT_FLOAT ? o->value.floats[0] : (float)o->value.ints[0];
+            bool is_number =
+                o->value.count == 1 && (o->value.type == SR_PBRT_FLOAT || o->value.type == SR_PBRT_INTEGER);
+            b->edge_scale = !is_number                       ? 0
+                            : o->value.type == SR_PBRT_FLOAT ? o->value.floats[0]
+                                                             : (float)o->value.ints[0];
             if (!(b->edge_scale > 0) || !isfinite(b->edge_scale))
-                return sr_pbrt_fail(b->d, o->value.where, b->error, SR_ERROR_INPUT, "Option \"%s\": expected one positive number", o->value.name);
+                return sr_pbrt_fail(b->d, o->value.where, b->error, SR_ERROR_INPUT,
+                                    "Option \"%s\": expected one positive number", o->value.name);
         } else if (strcmp(o->name, "units") == 0) {
             const char *word = o->value.type == SR_PBRT_STRING_TYPE && o->value.count == 1 ? o->value.strings[0] : "";
             bool is_si = strcmp(word, "si") == 0;
@@ -402,8 +421,8 @@ static sr_status build_options(struct sr_pbrt_build *b)
             for (size_t k = 0; k < sizeof harmless / sizeof *harmless; ++k)
                 is_harmless = is_harmless || strcmp(o->name, harmless[k]) == 0;
             if (is_harmless)
-                sr_log(b->log, SR_INFO, "%s:%d:%d: Option \"%s\" is about how pbrt works inside: it does nothing here", o->value.where.file, o->value.where.line,
-                       o->value.where.column, o->name);
+                sr_log(b->log, SR_INFO, "%s:%d:%d: Option \"%s\" is about how pbrt works inside: it does nothing here",
+                       o->value.where.file, o->value.where.line, o->value.where.column, o->name);
             else if (is_on || o->value.type != SR_PBRT_BOOL)
                 sr_pbrt_warn(b->d, o->value.where, "Option \"%s\" is not supported yet and does nothing",
                              o->value.name);
@@ -431,7 +450,9 @@ sr_status sr_pbrt_settle_integrator(struct sr_pbrt_build *b)
         i->model = sr_integrator_model_find("path"); // which takes the same parameters
     if (!has_media || (strcmp(name, "bdpt") != 0 && strcmp(name, "lightpath") != 0 && strcmp(name, "caustics") != 0))
         return SR_OK;
-    sr_log(b->log, SR_WARNING, "%s: \"%s\" knows no media here: \"volpath\" renders this scene instead, with the same expectation", b->main_path, name);
+    sr_log(b->log, SR_WARNING,
+           "%s: \"%s\" knows no media here: \"volpath\" renders this scene instead, with the same expectation",
+           b->main_path, name);
     struct sr_integrator own = *i;
     return sr_integrator_parse("volpath", &own, b->arena, i, b->error);
 }

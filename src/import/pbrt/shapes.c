@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Shapes, objects and instances. PLY files are read ahead, several at a time; everything is added in the file's order. */
+/* Shapes, objects and instances. PLY files are read ahead, several at a time; everything is added in the file's order.
+ */
 #include "import/pbrt/build.h"
 #include "import/ply.h"
 
@@ -20,8 +21,10 @@ struct displaced {
 };
 static const struct sr_param ply_params[] = {
     {.kind = SR_PARAM_FILE, .name = "filename", .text = "a PLY file, which gzip may have packed"},
-    {SR_PARAM_FLOAT_TEXTURE, "displacement", "m", -INFINITY, INFINITY, NAN, offsetof(struct displaced, displacement), "of the vertices along their normals"},
-    {SR_PARAM_FLOAT, "edgelength", "m", 0, INFINITY, 1, offsetof(struct displaced, edge_length), "that no edge reaches, in the world, before displacement"},
+    {SR_PARAM_FLOAT_TEXTURE, "displacement", "m", -INFINITY, INFINITY, NAN, offsetof(struct displaced, displacement),
+     "of the vertices along their normals"},
+    {SR_PARAM_FLOAT, "edgelength", "m", 0, INFINITY, 1, offsetof(struct displaced, edge_length),
+     "that no edge reaches, in the world, before displacement"},
     {.name = NULL},
 };
 const struct sr_param *const sr_pbrt_ply_params = ply_params;
@@ -122,7 +125,8 @@ static bool moves(const struct sr_pbrt_build *b, const struct sr_pbrt_shape *s)
 /* What moves is made in its own space. */
 static struct sr_shape_placement placement_of(const struct sr_pbrt_build *b, const struct sr_pbrt_shape *s)
 {
-    struct sr_transform own = moves(b, s) ? sr_transform_identity() : sr_pbrt_transform_of(b, s->entity.transform, sr_pbrt_place_of(s));
+    struct sr_transform own =
+        moves(b, s) ? sr_transform_identity() : sr_pbrt_transform_of(b, s->entity.transform, sr_pbrt_place_of(s));
     return (struct sr_shape_placement){own, s->reverse_orientation};
 }
 
@@ -150,7 +154,8 @@ static void reorder_quads(int32_t *indices, uint32_t quads)
     }
 }
 
-static sr_status make_triangles(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, const struct sr_ply_mesh *ply, struct sr_shape *out)
+static sr_status make_triangles(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, const struct sr_ply_mesh *ply,
+                                struct sr_shape *out)
 {
     struct sr_shape_mesh *m = sr_arena_alloc(b->arena, sizeof *m);
     if (!m)
@@ -184,14 +189,16 @@ static sr_status add_patches(struct sr_pbrt_build *b, const struct sr_pbrt_shape
     return status;
 }
 
-static sr_status make_quads(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, struct sr_ply_mesh *ply, struct sr_shape shapes[], int *count)
+static sr_status make_quads(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s, struct sr_ply_mesh *ply,
+                            struct sr_shape shapes[], int *count)
 {
     reorder_quads(ply->quads, ply->quad_count);
-    struct sr_shape_patches m = {.P = slice(ply->P, ply->vertex_count),
-                                 .N = slice(ply->N, ply->vertex_count),
-                                 .uv = slice(ply->uv, ply->vertex_count),
-                                 .indices = slice(ply->quads, 4 * ply->quad_count),
-                                 .face_indices = slice(ply->face_indices ? ply->face_indices + ply->triangle_count : NULL, ply->quad_count)};
+    struct sr_shape_patches m = {
+        .P = slice(ply->P, ply->vertex_count),
+        .N = slice(ply->N, ply->vertex_count),
+        .uv = slice(ply->uv, ply->vertex_count),
+        .indices = slice(ply->quads, 4 * ply->quad_count),
+        .face_indices = slice(ply->face_indices ? ply->face_indices + ply->triangle_count : NULL, ply->quad_count)};
     return add_patches(b, s, &m, shapes, count);
 }
 
@@ -205,9 +212,11 @@ static sr_status displace(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s
     if (status != SR_OK || !sr_pbrt_find(&s->entity.params, "displacement"))
         return status;
     struct sr_error inner = {0};
-    struct sr_transform to_world = sr_pbrt_transform_of(b, s->entity.transform, SR_PBRT_TO_WORLD); // as textures take it
-    return sr_pbrt_displace(ply, &to_world, d.edge_length * b->edge_scale, d.displacement, &inner) == SR_OK ? SR_OK
-                                                                                                            : sr_pbrt_wrap(b, &s->entity, &inner);
+    struct sr_transform to_world =
+        sr_pbrt_transform_of(b, s->entity.transform, SR_PBRT_TO_WORLD); // as textures take it
+    return sr_pbrt_displace(ply, &to_world, d.edge_length * b->edge_scale, d.displacement, &inner) == SR_OK
+               ? SR_OK
+               : sr_pbrt_wrap(b, &s->entity, &inner);
 }
 
 static sr_status make_ply(struct adder *a, const struct sr_pbrt_shape *s, struct loaded *l, struct sr_shape shapes[],
@@ -285,7 +294,8 @@ static sr_status find_emission(struct adder *a, const struct sr_pbrt_shape *s, c
     }
     if (!shapes[0].model->sample) {
         if (!a->has_warned_curve_light)
-            sr_pbrt_warn(b->d, s->entity.where, "a %s cannot shine: its area light is left out (pbrt ends when it draws from one)",
+            sr_pbrt_warn(b->d, s->entity.where,
+                         "a %s cannot shine: its area light is left out (pbrt ends when it draws from one)",
                          shapes[0].model->name);
         a->has_warned_curve_light = true;
         return SR_OK;
@@ -302,7 +312,9 @@ static sr_status find_emission(struct adder *a, const struct sr_pbrt_shape *s, c
     a->emission = *out;
     const struct sr_pbrt_param *p = sr_pbrt_find(&s->entity.params, "emissionfilename");
     if (status == SR_OK && p && !(*out)->texels.width)
-        sr_pbrt_warn(b->d, p->where, "\"emissionfilename\" does not glow, here as in pbrt: \"string filename\" of AreaLightSource would");
+        sr_pbrt_warn(
+            b->d, p->where,
+            "\"emissionfilename\" does not glow, here as in pbrt: \"string filename\" of AreaLightSource would");
     return status;
 }
 
@@ -346,7 +358,8 @@ static sr_status add_shape(struct adder *a, const struct sr_pbrt_shape *s, struc
     struct sr_shape shapes[4];
     int count = 0;
     struct common common = {{NULL, NULL}};
-    struct sr_shape_def def = {.where = where_of(a, s), .object = s->object1 ? a->objects[s->object1 - 1] : (sr_object_id){0}};
+    struct sr_shape_def def = {.where = where_of(a, s),
+                               .object = s->object1 ? a->objects[s->object1 - 1] : (sr_object_id){0}};
     *run = 1;
     sr_status status = find_media(a, s, &def.media);
     if (status == SR_OK)
@@ -365,10 +378,12 @@ static sr_status add_shape(struct adder *a, const struct sr_pbrt_shape *s, struc
     float alpha;
     bool is_opaque = !common.alpha.model || (sr_texture_is_constant_float(common.alpha, &alpha) && alpha >= 1);
     def.alpha = is_opaque ? (struct sr_texture){NULL, NULL} : common.alpha;
-    if (moves(b, s) && sr_pbrt_motion(b, s->entity.transform, sr_pbrt_place_of(s), "Shape", s->entity.where, &def.motion) != SR_OK)
+    if (moves(b, s) &&
+        sr_pbrt_motion(b, s->entity.transform, sr_pbrt_place_of(s), "Shape", s->entity.where, &def.motion) != SR_OK)
         return b->error->status;
     if (sr_pbrt_moves(b, s->entity.transform) && !def.motion)
-        sr_pbrt_warn(b->d, s->entity.where, "a shape that shines cannot move: it stands where it is when the shutter opens");
+        sr_pbrt_warn(b->d, s->entity.where,
+                     "a shape that shines cannot move: it stands where it is when the shutter opens");
     if (s->object1 && count > 0 && !a->first_shapes[s->object1 - 1].model)
         a->first_shapes[s->object1 - 1] = shapes[0];
     for (int i = 0; i < count; ++i) {
@@ -410,7 +425,8 @@ static sr_status add_instances(struct adder *a)
         struct sr_transform to_world = sr_pbrt_transform_of(b, instance->transform, SR_PBRT_TO_WORLD);
         if (!sr_pbrt_moves(b, instance->transform))
             sr_scene_add_instance(b->result->scene, object, &to_world);
-        else if (sr_pbrt_motion(b, instance->transform, SR_PBRT_TO_WORLD, "ObjectInstance", instance->where, &motion) == SR_OK)
+        else if (sr_pbrt_motion(b, instance->transform, SR_PBRT_TO_WORLD, "ObjectInstance", instance->where, &motion) ==
+                 SR_OK)
             sr_scene_add_moving_instance(b->result->scene, object, motion);
         else
             return b->error->status;
@@ -424,9 +440,11 @@ static sr_status build(struct adder *a)
     const struct sr_pbrt_shape *shapes = b->d->shapes.data;
     size_t n = b->d->shapes.count, window = 32 * (size_t)b->threads;
     for (size_t i = 0; i < n; ++i) { // empty objects stay out
-        uint32_t object1 = shapes[i].object1, like1 = object1 ? SR_PBRT_AT(b->d->objects, struct sr_pbrt_object, object1 - 1)->like1 : 0;
+        uint32_t object1 = shapes[i].object1,
+                 like1 = object1 ? SR_PBRT_AT(b->d->objects, struct sr_pbrt_object, object1 - 1)->like1 : 0;
         if (object1 && !a->objects[object1 - 1].index1)
-            a->objects[object1 - 1] = like1 ? sr_scene_add_object_like(b->result->scene, a->objects[like1 - 1]) : sr_scene_add_object(b->result->scene);
+            a->objects[object1 - 1] = like1 ? sr_scene_add_object_like(b->result->scene, a->objects[like1 - 1])
+                                            : sr_scene_add_object(b->result->scene);
     }
     sr_status status = SR_OK;
     for (size_t start = 0; start < n && status == SR_OK;) {
@@ -441,7 +459,8 @@ static sr_status build(struct adder *a)
 
 sr_status sr_pbrt_build_shapes(struct sr_pbrt_build *b)
 {
-    struct adder a = {.b = b, .objects = sr_arena_alloc(&b->scratch, b->d->objects.count * sizeof(sr_object_id)),
+    struct adder a = {.b = b,
+                      .objects = sr_arena_alloc(&b->scratch, b->d->objects.count * sizeof(sr_object_id)),
                       .first_shapes = sr_arena_alloc(&b->scratch, b->d->objects.count * sizeof(struct sr_shape))};
     return a.objects && a.first_shapes ? build(&a) : sr_pbrt_no_memory(b);
 }

@@ -61,8 +61,8 @@ static const struct form {
 static const struct form *find_form(const struct sr_pbrt_token *token, bool is_annotation)
 {
     const struct form *f = forms;
-    while (f->word && !(token->kind == SR_PBRT_WORD && (f->place & (is_annotation ? IN_COMMENT : IN_TEXT)) && strlen(f->word) == token->length &&
-                        memcmp(f->word, token->text, token->length) == 0))
+    while (f->word && !(token->kind == SR_PBRT_WORD && (f->place & (is_annotation ? IN_COMMENT : IN_TEXT)) &&
+                        strlen(f->word) == token->length && memcmp(f->word, token->text, token->length) == 0))
         ++f;
     return f->word ? f : NULL;
 }
@@ -81,8 +81,8 @@ static sr_status unknown(struct sr_pbrt_parser *p, const struct sr_pbrt_token *t
     struct sr_pbrt_suggestion suggestion = {.word = word};
     for (const struct form *f = forms; f->word; ++f)
         sr_pbrt_suggest(&suggestion, f->word);
-    return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT, "%s stands where a directive was expected%s", word,
-                        sr_pbrt_suggestion_text(&suggestion, buffer));
+    return sr_pbrt_fail(p->d, token->where, p->error, SR_ERROR_INPUT, "%s stands where a directive was expected%s",
+                        word, sr_pbrt_suggestion_text(&suggestion, buffer));
 }
 
 /* ActiveTransform's word becomes a string */
@@ -93,10 +93,12 @@ static sr_status read_active(struct sr_pbrt_parser *p, struct sr_pbrt_statement 
     if (sr_pbrt_lexer_next(p->lexer, &token, p->error) != SR_OK)
         return p->error->status;
     for (int i = 0; i < 3; ++i)
-        if (token.kind == SR_PBRT_WORD && token.length == strlen(words[i]) && memcmp(token.text, words[i], token.length) == 0)
+        if (token.kind == SR_PBRT_WORD && token.length == strlen(words[i]) &&
+            memcmp(token.text, words[i], token.length) == 0)
             s->strings[0] = words[i];
     if (!s->strings[0])
-        return sr_pbrt_fail(p->d, token.where, p->error, SR_ERROR_INPUT, "ActiveTransform: expected All, StartTime or EndTime");
+        return sr_pbrt_fail(p->d, token.where, p->error, SR_ERROR_INPUT,
+                            "ActiveTransform: expected All, StartTime or EndTime");
     return SR_OK;
 }
 
@@ -116,7 +118,8 @@ static sr_status read_strings(struct sr_pbrt_parser *p, const struct form *form,
     return status;
 }
 
-sr_status sr_pbrt_statement_read(struct sr_pbrt_parser *p, const struct sr_pbrt_token *token, bool is_annotation, struct sr_pbrt_statement *s)
+sr_status sr_pbrt_statement_read(struct sr_pbrt_parser *p, const struct sr_pbrt_token *token, bool is_annotation,
+                                 struct sr_pbrt_statement *s)
 {
     const struct form *form = find_form(token, is_annotation);
     *s = (struct sr_pbrt_statement){.where = token->where, .is_annotation = is_annotation};
@@ -133,7 +136,8 @@ sr_status sr_pbrt_statement_read(struct sr_pbrt_parser *p, const struct sr_pbrt_
     if (status == SR_OK && strcmp(form->word, "Option") == 0)
         return sr_pbrt_option_read(p->d, p->lexer, &p->scratch, &s->params, p->error);
     if (status == SR_OK && form->has_params)
-        status = sr_pbrt_params_read(p->d, p->lexer, &p->scratch, SR_SRGB, (struct sr_pbrt_params){NULL, 0}, &s->params, p->error);
+        status = sr_pbrt_params_read(p->d, p->lexer, &p->scratch, SR_SRGB, (struct sr_pbrt_params){NULL, 0}, &s->params,
+                                     p->error);
     return status;
 }
 

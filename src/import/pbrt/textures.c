@@ -46,7 +46,8 @@ static void find_like(struct sr_pbrt_late_texture *late, size_t k)
 {
     struct sr_pbrt_late_texture *t = &late[k];
     for (size_t i = 0; i < k && t->model->share && !t->like; ++i)
-        if (!late[i].like && late[i].model == t->model && late[i].use.rgb_use == t->use.rgb_use && late[i].gamma == t->gamma && strcmp(late[i].path, t->path) == 0)
+        if (!late[i].like && late[i].model == t->model && late[i].use.rgb_use == t->use.rgb_use &&
+            late[i].gamma == t->gamma && strcmp(late[i].path, t->path) == 0)
             t->like = &late[i];
 }
 
@@ -104,7 +105,8 @@ static sr_status make(struct sr_pbrt_build *b, const struct sr_pbrt_texture *t, 
     if (!m && strcmp(e->model, "ptex") == 0)
         return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT,
                             "Texture \"%s\": Ptex files are not read: bake it into an image over the surface's (u, v) "
-                            "and use \"imagemap\"", e->name);
+                            "and use \"imagemap\"",
+                            e->name);
     if (!m) {
         const char *names[32];
         size_t n = 0;

@@ -12,7 +12,8 @@ static sr_status set(struct sr_pbrt_parser *p, const struct sr_matrix *a, bool i
     if (!sr_transform_is_valid(&t))
         return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "%s: expected a transform that can be inverted",
                             p->directive);
-    struct sr_matrix *ctm[2] = {p->state.at_start ? &p->state.ctm.start : NULL, p->state.at_end ? &p->state.ctm.end : NULL};
+    struct sr_matrix *ctm[2] = {p->state.at_start ? &p->state.ctm.start : NULL,
+                                p->state.at_end ? &p->state.ctm.end : NULL};
     for (int i = 0; i < 2; ++i)
         if (ctm[i])
             *ctm[i] = is_relative ? sr_matrix_multiply(ctm[i], a) : *a;
@@ -180,7 +181,8 @@ sr_status sr_pbrt_read_transform_times(struct sr_pbrt_parser *p)
     if (sr_pbrt_read_numbers(p, 2, v) != SR_OK)
         return p->error->status;
     if (!(v[0] <= v[1]) || !isfinite(v[0]) || !isfinite(v[1]))
-        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "TransformTimes %g %g: expected two times, the earlier one first", v[0], v[1]);
+        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT,
+                            "TransformTimes %g %g: expected two times, the earlier one first", v[0], v[1]);
     p->d->transform_start_time = (float)v[0];
     p->d->transform_end_time = (float)v[1];
     return SR_OK;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Declared uncertainties: numbers of the scene that are known to so much (type B of the GUM), and scenes with one of them shifted.
+/* Declared uncertainties: numbers of the scene that are known to so much (type B of the GUM), and scenes with one of
+ * them shifted.
  *
  *     #@ Uncertainty "wall" "string material" "wall" "string parameter" "reflectance" "float u" 0.001
  *
@@ -22,8 +23,10 @@ static const struct sr_param table[] = {
     {SR_PARAM_STRING, "light", "1", 0, 0, 0, offsetof(struct declared, light), NULL},
     {SR_PARAM_STRING, "arealight", "1", 0, 0, 0, offsetof(struct declared, area_light), NULL},
     {SR_PARAM_STRING, "parameter", "1", 0, 0, 0, offsetof(struct declared, parameter), NULL},
-    {SR_PARAM_FLOAT, "u", "1", 0, INFINITY, NAN, offsetof(struct declared, u), "standard uncertainty, in the parameter's unit"},
-    {SR_PARAM_FLOAT, "a", "1", 0, INFINITY, NAN, offsetof(struct declared, a), "instead of u: half the width of a rectangular distribution"},
+    {SR_PARAM_FLOAT, "u", "1", 0, INFINITY, NAN, offsetof(struct declared, u),
+     "standard uncertainty, in the parameter's unit"},
+    {SR_PARAM_FLOAT, "a", "1", 0, INFINITY, NAN, offsetof(struct declared, a),
+     "instead of u: half the width of a rectangular distribution"},
     {SR_PARAM_BOOL, "relative", "1", 0, 1, 0, offsetof(struct declared, relative), "u and a are shares of the value"},
     {.name = NULL},
 };
@@ -36,7 +39,8 @@ static struct sr_pbrt_entity *at_number(const struct sr_array *list, size_t stri
     unsigned long number = word[0] == '#' ? strtoul(word + 1, &end, 10) : 0;
     if (!end || *end || number < 1 || number > list->count - first)
         return NULL;
-    return (struct sr_pbrt_entity *)(void *)((char *)list->data + (first + number - 1) * stride); // entities come first in what holds them
+    return (struct sr_pbrt_entity *)(void *)((char *)list->data +
+                                             (first + number - 1) * stride); // entities come first in what holds them
 }
 
 static struct sr_pbrt_entity *find_entity(struct sr_pbrt_build *b, const struct declared *u)
@@ -47,12 +51,15 @@ static struct sr_pbrt_entity *find_entity(struct sr_pbrt_build *b, const struct 
     if (u->area_light)
         return at_number(&d->area_lights, sizeof(struct sr_pbrt_entity), 0, u->area_light);
     uint32_t index1 = sr_pbrt_names_find(&d->material_names, u->material);
-    return index1 ? SR_PBRT_AT(d->named_materials, struct sr_pbrt_entity, index1 - 1) : at_number(&d->materials, sizeof(struct sr_pbrt_entity), 1, u->material);
+    return index1 ? SR_PBRT_AT(d->named_materials, struct sr_pbrt_entity, index1 - 1)
+                  : at_number(&d->materials, sizeof(struct sr_pbrt_entity), 1, u->material);
 }
 
 static bool has_numbers(const struct sr_pbrt_param *p)
 {
-    return p->floats && p->count > 0 && (p->type == SR_PBRT_FLOAT || p->type == SR_PBRT_RGB || p->type == SR_PBRT_BLACKBODY || p->type == SR_PBRT_SPECTRUM);
+    return p->floats && p->count > 0 &&
+           (p->type == SR_PBRT_FLOAT || p->type == SR_PBRT_RGB || p->type == SR_PBRT_BLACKBODY ||
+            p->type == SR_PBRT_SPECTRUM);
 }
 
 static sr_status shift_parameter(struct sr_pbrt_build *b, struct sr_pbrt_param *p, double by)
@@ -67,25 +74,37 @@ static sr_status shift_parameter(struct sr_pbrt_build *b, struct sr_pbrt_param *
     return SR_OK;
 }
 
-static sr_status read_one(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, uint32_t index, struct sr_declared_uncertainty *out)
+static sr_status read_one(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, uint32_t index,
+                          struct sr_declared_uncertainty *out)
 {
     struct declared u = {0};
     if (sr_pbrt_bind(b, table, e, (struct sr_pbrt_use){SR_PARAM_ALBEDO, false}, &u) != SR_OK)
         return b->error->status;
     sr_pbrt_warn_unused(b, e, table, NULL);
-    if (!u.parameter || (u.material != NULL) + (u.light != NULL) + (u.area_light != NULL) != 1 || isnan(u.u) == isnan(u.a))
-        return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT,
-                            "Uncertainty \"%s\": expected one of \"material\", \"light\", \"arealight\"; and \"parameter\"; and one of \"u\", \"a\"", e->model);
+    if (!u.parameter || (u.material != NULL) + (u.light != NULL) + (u.area_light != NULL) != 1 ||
+        isnan(u.u) == isnan(u.a))
+        return sr_pbrt_fail(
+            b->d, e->where, b->error, SR_ERROR_INPUT,
+            "Uncertainty \"%s\": expected one of \"material\", \"light\", \"arealight\"; and \"parameter\"; and one of \"u\", \"a\"",
+            e->model);
     struct sr_pbrt_entity *of = find_entity(b, &u);
     if (!of)
-        return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "Uncertainty \"%s\": there is no %s \"%s\"", e->model,
-                            u.material ? "material" : u.light ? "light" : "area light", u.material ? u.material : u.light ? u.light : u.area_light);
+        return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "Uncertainty \"%s\": there is no %s \"%s\"",
+                            e->model,
+                            u.material ? "material"
+                            : u.light  ? "light"
+                                       : "area light",
+                            u.material ? u.material
+                            : u.light  ? u.light
+                                       : u.area_light);
     struct sr_pbrt_param *p = NULL;
     for (uint32_t i = 0; i < of->params.count && !p; ++i)
         p = strcmp(of->params.items[i].name, u.parameter) == 0 ? &of->params.items[i] : NULL;
     if (!p || !has_numbers(p))
-        return sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT, "Uncertainty \"%s\": %s \"%s\" gives no numbers for \"%s\": expected float, rgb, blackbody, or a spectrum of pairs",
-                            e->model, of->directive, of->name ? of->name : of->model, u.parameter);
+        return sr_pbrt_fail(
+            b->d, e->where, b->error, SR_ERROR_INPUT,
+            "Uncertainty \"%s\": %s \"%s\" gives no numbers for \"%s\": expected float, rgb, blackbody, or a spectrum of pairs",
+            e->model, of->directive, of->name ? of->name : of->model, u.parameter);
     *out = (struct sr_declared_uncertainty){.name = sr_arena_string(b->arena, e->model), .is_rectangular = isnan(u.u)};
     out->value = (double)p->floats[p->type == SR_PBRT_SPECTRUM ? 1 : 0];
     out->u = (isnan(u.u) ? (double)u.a / sqrt(3) : (double)u.u) * (u.relative ? fabs(out->value) : 1);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* pbrt-v3's directives and parameters as pbrt-v4's, one statement at a time; materials are in upgrade_materials.c.
  *
- * Where only the word has changed, so does the word. Where the default has, it is written. Where the meaning has, the number is
- * computed, or a warning tells the place: light that a file gives as a spectrum is scaled to luminance 1 by pbrt-v4, so that
+ * Where only the word has changed, so does the word. Where the default has, it is written. Where the meaning has, the
+ * number is computed, or a warning tells the place: light that a file gives as a spectrum is scaled to luminance 1 by
+ * pbrt-v4, so that
  *
  *     scale_v4 = scale_v3 integral L ybar / integral ybar                                   [1]
  *
@@ -50,7 +51,8 @@ void sr_pbrt_edit_rename(struct sr_pbrt_upgrade *u, const char *name, const char
     }
 }
 
-struct sr_pbrt_param *sr_pbrt_edit_set(struct sr_pbrt_upgrade *u, enum sr_pbrt_type type, const char *name, const void *values, uint32_t count)
+struct sr_pbrt_param *sr_pbrt_edit_set(struct sr_pbrt_upgrade *u, enum sr_pbrt_type type, const char *name,
+                                       const void *values, uint32_t count)
 {
     struct sr_pbrt_param *p = sr_pbrt_edit_find(u, name);
     bool has_words = type == SR_PBRT_STRING_TYPE || type == SR_PBRT_TEXTURE;
@@ -216,7 +218,8 @@ static void upgrade_sampler(struct sr_pbrt_upgrade *u)
 
 static void upgrade_integrator(struct sr_pbrt_upgrade *u)
 {
-    static const char *const gone[] = {"rrthreshold", "imagewritefrequency", "strategy", "pixelbounds", "lightsamplestrategy", NULL};
+    static const char *const gone[] = {"rrthreshold", "imagewritefrequency", "strategy",
+                                       "pixelbounds", "lightsamplestrategy", NULL};
     const char **name = &u->s->strings[0];
     const struct sr_pbrt_param *choice = sr_pbrt_edit_find(u, "lightsamplestrategy");
     if (sr_pbrt_edit_find(u, "numiterations") || sr_pbrt_edit_find(u, "iterations"))
@@ -224,7 +227,8 @@ static void upgrade_integrator(struct sr_pbrt_upgrade *u)
     sr_pbrt_edit_remove(u, "numiterations");
     sr_pbrt_edit_remove(u, "iterations");
     if (choice && choice->strings)
-        sr_pbrt_edit_string(u, SR_PBRT_STRING_TYPE, "lightsampler", is(choice->strings[0], "spatial") ? "bvh" : choice->strings[0]);
+        sr_pbrt_edit_string(u, SR_PBRT_STRING_TYPE, "lightsampler",
+                            is(choice->strings[0], "spatial") ? "bvh" : choice->strings[0]);
     if (sr_pbrt_edit_find(u, "pixelbounds"))
         warn(u, "\"pixelbounds\" is left out: the Film has it now");
     if (is(*name, "directlighting") || is(*name, "whitted")) {
@@ -265,13 +269,15 @@ static double luminance_of(struct sr_pbrt_upgrade *u, const char *name)
         sr_pbrt_edit_set(u, SR_PBRT_BLACKBODY, name, p->floats, 1);
     } else if (p && p->type == SR_PBRT_SPECTRUM && !p->is_text && p->floats) {
         int count = (int)p->count / 2;
-        float *lambda = sr_arena_alloc(&arena, (size_t)count * sizeof *lambda), *values = sr_arena_alloc(&arena, (size_t)count * sizeof *values);
+        float *lambda = sr_arena_alloc(&arena, (size_t)count * sizeof *lambda),
+              *values = sr_arena_alloc(&arena, (size_t)count * sizeof *values);
         struct sr_error error = {0};
         for (int i = 0; lambda && values && i < count; ++i) {
             lambda[i] = p->floats[2 * i];
             values[i] = p->floats[2 * i + 1];
         }
-        struct sr_spd s = lambda && values ? sr_spd_from_samples(&arena, lambda, values, count, &error) : sr_spd_constant(1);
+        struct sr_spd s =
+            lambda && values ? sr_spd_from_samples(&arena, lambda, values, count, &error) : sr_spd_constant(1);
         if (error.status == SR_OK)
             scale = sr_spd_luminous_integral(&s) / SR_CIE_Y_INTEGRAL;
     } else if (p && p->type == SR_PBRT_SPECTRUM)
@@ -308,7 +314,9 @@ static void upgrade_light(struct sr_pbrt_upgrade *u)
         sr_pbrt_edit_remove(u, colour);
     }
     if (has_map && is(u->s->strings[0], "infinite"))
-        warn(u, "pbrt-v4 wants the image as an equal-area map of the octahedron: pbrt's imgtool makeequiarea makes it of this one");
+        warn(
+            u,
+            "pbrt-v4 wants the image as an equal-area map of the octahedron: pbrt's imgtool makeequiarea makes it of this one");
     if (is(u->s->strings[0], "projection"))
         set_default(u, "fov", 45);
     if (is(u->s->word, "AreaLightSource") && is(u->s->strings[0], "area"))
@@ -359,7 +367,8 @@ static void upgrade_texture(struct sr_pbrt_upgrade *u)
     if ((p = sr_pbrt_edit_find(u, "gamma"))) {
         char text[64];
         snprintf(text, sizeof text, "gamma %.6g", p->floats ? (double)p->floats[0] : 2.2);
-        const char *encoding = p->type == SR_PBRT_BOOL ? (p->ints[0] ? "sRGB" : "linear") : sr_pbrt_text(u->p->d, text, strlen(text));
+        const char *encoding =
+            p->type == SR_PBRT_BOOL ? (p->ints[0] ? "sRGB" : "linear") : sr_pbrt_text(u->p->d, text, strlen(text));
         sr_pbrt_edit_string(u, SR_PBRT_STRING_TYPE, "encoding", encoding ? encoding : "sRGB");
         sr_pbrt_edit_remove(u, "gamma");
     }
@@ -431,7 +440,8 @@ static void upgrade_medium(struct sr_pbrt_upgrade *u)
 /* TransformBegin kept the material; AttributeBegin, its successor, does not. */
 static void watch_block(struct sr_pbrt_upgrade *u)
 {
-    static const char *const state[] = {"Material", "NamedMaterial", "AreaLightSource", "MediumInterface", "ReverseOrientation"};
+    static const char *const state[] = {"Material", "NamedMaterial", "AreaLightSource", "MediumInterface",
+                                        "ReverseOrientation"};
     if (is(u->s->word, "TransformBegin")) {
         u->s->word = "AttributeBegin";
         if (++u->block_depth < 64)
@@ -464,9 +474,18 @@ sr_status sr_pbrt_upgrade(struct sr_pbrt_upgrade *u)
         const char *word;
         void (*upgrade)(struct sr_pbrt_upgrade *u);
     } words[] = {
-        {"PixelFilter", upgrade_filter},   {"Film", upgrade_film},           {"Sampler", upgrade_sampler}, {"Integrator", upgrade_integrator},
-        {"Camera", upgrade_camera},        {"LightSource", upgrade_light},   {"AreaLightSource", upgrade_light}, {"Texture", upgrade_texture},
-        {"Shape", upgrade_shape},          {"MakeNamedMaterial", upgrade_named_material}, {"MakeNamedMedium", upgrade_medium}, {"WorldBegin", add_filter},
+        {"PixelFilter", upgrade_filter},
+        {"Film", upgrade_film},
+        {"Sampler", upgrade_sampler},
+        {"Integrator", upgrade_integrator},
+        {"Camera", upgrade_camera},
+        {"LightSource", upgrade_light},
+        {"AreaLightSource", upgrade_light},
+        {"Texture", upgrade_texture},
+        {"Shape", upgrade_shape},
+        {"MakeNamedMaterial", upgrade_named_material},
+        {"MakeNamedMedium", upgrade_medium},
+        {"WorldBegin", add_filter},
     };
     struct sr_pbrt_statement *s = u->s;
     u->room = s->params.count + 16;

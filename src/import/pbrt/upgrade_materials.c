@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* pbrt-v3's materials as pbrt-v4's.
  *
- * Slopes: pbrt-v3 took alpha = 1.62142 + 0.819955 x + 0.1734 x^2 + 0.0171201 x^3 + 0.000640711 x^4, x = ln max(roughness, 0.001),
- * pbrt-v4 takes alpha = sqrt(roughness): roughness that is a number becomes alpha itself, with "remaproughness" false. */
+ * Slopes: pbrt-v3 took alpha = 1.62142 + 0.819955 x + 0.1734 x^2 + 0.0171201 x^3 + 0.000640711 x^4, x = ln
+ * max(roughness, 0.001), pbrt-v4 takes alpha = sqrt(roughness): roughness that is a number becomes alpha itself, with
+ * "remaproughness" false. */
 #include "import/pbrt/closest.h"
 #include "import/pbrt/statement.h"
 
@@ -60,7 +61,8 @@ static void upgrade_roughness(struct sr_pbrt_upgrade *u, const char *model, floa
     if (!is_remapped || (!has_any && initial < 0))
         return;
     if (has_texture) {
-        warn(u, model, "the texture of its roughness means other slopes in pbrt-v4 (alpha = sqrt(roughness)): see to it");
+        warn(u, model,
+             "the texture of its roughness means other slopes in pbrt-v4 (alpha = sqrt(roughness)): see to it");
         return;
     }
     for (int i = 0; i < 3; ++i) {
@@ -137,7 +139,8 @@ static const char *translucent(struct sr_pbrt_upgrade *u)
     static const float half[3] = {0.5f, 0.5f, 0.5f}, quarter[3] = {0.25f, 0.25f, 0.25f};
     static const char *const gone[] = {"Kd", "Ks", "roughness", "remaproughness"};
     const struct sr_pbrt_param *Kd = sr_pbrt_edit_find(u, "Kd");
-    struct sr_pbrt_param colour = Kd ? *Kd : (struct sr_pbrt_param){.type = SR_PBRT_RGB, .name = "Kd", .count = 3, .floats = quarter};
+    struct sr_pbrt_param colour =
+        Kd ? *Kd : (struct sr_pbrt_param){.type = SR_PBRT_RGB, .name = "Kd", .count = 3, .floats = quarter};
     lose(u, "translucent", "Ks", 0.25f, 0);
     for (int i = 0; i < 2; ++i) {
         const struct sr_pbrt_param *share = sr_pbrt_edit_find(u, names[i][0]);
@@ -197,7 +200,8 @@ static const char *mix(struct sr_pbrt_upgrade *u)
 /* Our "principled" has the same words; pbrt gets what it knows of them. */
 static const char *disney(struct sr_pbrt_upgrade *u)
 {
-    static const char *const gone[] = {"sheen", "sheentint", "clearcoat", "clearcoatgloss", "speculartint", "anisotropic", "scatterdistance", "thin", "difftrans", "flatness"};
+    static const char *const gone[] = {"sheen",       "sheentint",       "clearcoat", "clearcoatgloss", "speculartint",
+                                       "anisotropic", "scatterdistance", "thin",      "difftrans",      "flatness"};
     rename_colour(u, "color", "reflectance", 0.5f);
     sr_pbrt_edit_rename(u, "spectrans", "specular_transmission");
     for (size_t i = 0; i < sizeof gone / sizeof *gone; ++i)
@@ -208,7 +212,8 @@ static const char *disney(struct sr_pbrt_upgrade *u)
     const char *name = u->s->strings[0];
     if (is(u->s->word, "Material") && !(name = sr_arena_printf(u->arena, "disney %d", ++u->count)))
         name = "disney";
-    struct sr_pbrt_entity e = {.directive = u->s->word, .model = "principled", .name = name, .params = u->s->params, .where = u->s->where};
+    struct sr_pbrt_entity e = {
+        .directive = u->s->word, .model = "principled", .name = name, .params = u->s->params, .where = u->s->where};
     sr_pbrt_closest_material(u->p->d, &e, u->out, u->p->error);
     struct sr_pbrt_param *items = sr_pbrt_words(u->p->d, (e.params.count + 16) * sizeof *items);
     if (items) {

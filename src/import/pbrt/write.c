@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A description as text: settings, then media, textures and materials by name, then lights, objects, shapes, instances. */
+/* A description as text: settings, then media, textures and materials by name, then lights, objects, shapes, instances.
+ */
 #include "import/describe.h"
 #include "import/pbrt/closest.h"
 #include "import/pbrt/format.h"
@@ -41,9 +42,11 @@ static void print_transform(struct writer *w, const char *word, uint32_t index)
     sr_pbrt_statement_print(w->out, &s);
 }
 
-static void print_words(struct writer *w, const char *word, const char *a, const char *b, const char *c, const struct sr_pbrt_params *params)
+static void print_words(struct writer *w, const char *word, const char *a, const char *b, const char *c,
+                        const struct sr_pbrt_params *params)
 {
-    struct sr_pbrt_statement s = {.word = word, .strings = {a, b, c}, .string_count = (a != NULL) + (b != NULL) + (c != NULL)};
+    struct sr_pbrt_statement s = {
+        .word = word, .strings = {a, b, c}, .string_count = (a != NULL) + (b != NULL) + (c != NULL)};
     if (params)
         s.params = *params;
     sr_pbrt_statement_print(w->out, &s);
@@ -54,7 +57,8 @@ static void print_words(struct writer *w, const char *word, const char *a, const
 /* An image that lay in the file is written beside the text. */
 static const char *unpack(struct writer *w, const struct sr_pbrt_memory_file *file)
 {
-    const char *stem = strrchr(file->name, '/'), *path = sr_convert_beside(&w->data, w->o->out, stem ? stem + 1 : file->name, "");
+    const char *stem = strrchr(file->name, '/'),
+               *path = sr_convert_beside(&w->data, w->o->out, stem ? stem + 1 : file->name, "");
     if (!path || sr_file_write(path, file->data, file->size, w->error) != SR_OK)
         return NULL;
     const char *slash = strrchr(path, '/');
@@ -77,10 +81,13 @@ static sr_status move_files(struct writer *w, struct sr_pbrt_params *params)
         if (p->type != SR_PBRT_STRING_TYPE || p->count != 1 || !names_file(p->name))
             continue;
         const struct sr_pbrt_memory_file *file = sr_pbrt_memory_file(&w->d, p->strings[0]);
-        const char **copy = sr_pbrt_words(&w->d, sizeof *copy), *beside = sr_path_beside(&w->data, w->path, p->strings[0]);
+        const char **copy = sr_pbrt_words(&w->d, sizeof *copy),
+                   *beside = sr_path_beside(&w->data, w->path, p->strings[0]);
         if (!copy || !beside)
             return sr_fail(w->error, SR_ERROR_RESOURCE, "%s: not enough memory", w->path);
-        *copy = file ? unpack(w, file) : p->strings[0][0] == '/' ? p->strings[0] : sr_path_seen_from(&w->data, w->o->out, beside);
+        *copy = file                      ? unpack(w, file)
+                : p->strings[0][0] == '/' ? p->strings[0]
+                                          : sr_path_seen_from(&w->data, w->o->out, beside);
         if (w->error->status != SR_OK)
             return w->error->status;
         if (!*copy)
@@ -102,7 +109,10 @@ static sr_status print_settings(struct writer *w)
         print_words(w, "Option", NULL, NULL, NULL, &params);
     }
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i)
-        if (all[i]->params.count || strcmp(all[i]->model, i == 0 ? "rgb" : i == 1 ? "zsobol" : i == 2 ? "gaussian" : "volpath") != 0)
+        if (all[i]->params.count || strcmp(all[i]->model, i == 0   ? "rgb"
+                                                          : i == 1 ? "zsobol"
+                                                          : i == 2 ? "gaussian"
+                                                                   : "volpath") != 0)
             print_words(w, all[i]->directive, all[i]->model, NULL, NULL, &all[i]->params);
     if (w->d.camera_medium && w->d.camera_medium[0])
         print_words(w, "MediumInterface", "", w->d.camera_medium, NULL, NULL);
@@ -161,19 +171,22 @@ static sr_status print_named_things(struct writer *w)
         bool is_made = false;
         if (!w->o->for_steradian && sr_pbrt_is_normal_texture(&w->d, t->entity.name))
             continue; // the material has a normal map instead
-        if (!w->o->for_steradian && sr_pbrt_closest_texture(&w->d, &w->data, w->path, w->o->out, t, &is_made, w->error) != SR_OK)
+        if (!w->o->for_steradian &&
+            sr_pbrt_closest_texture(&w->d, &w->data, w->path, w->o->out, t, &is_made, w->error) != SR_OK)
             return w->error->status;
         if (!is_made && move_files(w, &t->entity.params) != SR_OK)
             return w->error->status;
         if (is_placed(w, t->entity.transform))
             begin_block(w, t->entity.transform);
-        print_words(w, "Texture", t->entity.name, t->is_float ? "float" : "spectrum", t->entity.model, &t->entity.params);
+        print_words(w, "Texture", t->entity.name, t->is_float ? "float" : "spectrum", t->entity.model,
+                    &t->entity.params);
         if (is_placed(w, t->entity.transform))
             end_block(w);
     }
     for (size_t i = 0; i < w->d.named_materials.count; ++i) {
         struct sr_pbrt_entity *e = SR_PBRT_AT(w->d.named_materials, struct sr_pbrt_entity, i);
-        if ((!w->o->for_steradian && sr_pbrt_closest_normals(&w->d, e, w->error) != SR_OK) || move_files(w, &e->params) != SR_OK)
+        if ((!w->o->for_steradian && sr_pbrt_closest_normals(&w->d, e, w->error) != SR_OK) ||
+            move_files(w, &e->params) != SR_OK)
             return w->error->status;
         if (!w->o->for_steradian && sr_pbrt_closest_material(&w->d, e, w->out, w->error) != SR_OK)
             return w->error->status;
@@ -268,7 +281,8 @@ static sr_status print_world(struct writer *w)
     return status;
 }
 
-sr_status sr_pbrt_write(const char *path, const struct sr_convert_options *o, struct sr_print *out, struct sr_log *log, struct sr_error *error)
+sr_status sr_pbrt_write(const char *path, const struct sr_convert_options *o, struct sr_print *out, struct sr_log *log,
+                        struct sr_error *error)
 {
     static const struct sr_import_options nothing;
     struct writer w = {.o = o, .path = path, .out = out, .error = error};

@@ -2,8 +2,8 @@
 /* Read before each file of the double-precision twins: float is double from here on.
  *
  * The models' files, and what they stand on, are compiled a second time behind this header. Constants have lost their
- * suffix f before (see cmake/double.cmake); every external name of theirs gets the ending _double by a generated header,
- * which also has read all system headers first, because those must not see the words below. */
+ * suffix f before (see cmake/double.cmake); every external name of theirs gets the ending _double by a generated
+ * header, which also has read all system headers first, because those must not see the words below. */
 #ifndef SR_LAB_DOUBLE_PREFIX_H
 #define SR_LAB_DOUBLE_PREFIX_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A stranger's program: it knows the installed headers only. Loads a scene, renders it, measures in it, and is told what is
- * wrong with a file that is not there. Compiled as C and as C++.
+/* A stranger's program: it knows the installed headers only. Loads a scene, renders it, measures in it, and is told
+ * what is wrong with a file that is not there. Compiled as C and as C++.
  *
  * Usage: consumer SCENE */
 #include <steradian/steradian.h>
@@ -21,7 +21,8 @@ static void expect(int condition, const char *what)
 
 static void look_at_picture(const struct sr_picture *picture)
 {
-    uint32_t width = sr_picture_width(picture), height = sr_picture_height(picture), count = sr_picture_channel_count(picture);
+    uint32_t width = sr_picture_width(picture), height = sr_picture_height(picture),
+             count = sr_picture_channel_count(picture);
     uint32_t red = count, error_of_red = count;
     for (uint32_t c = 0; c < count; ++c) {
         if (strcmp(sr_picture_channel_name(picture, c), "R") == 0)
@@ -69,7 +70,8 @@ int main(int argc, char **argv)
 {
     char error[256] = "";
     struct sr_world *world = NULL;
-    expect(sr_world_load("no/such/file.pbrt", NULL, NULL, &world, error, sizeof error) != SR_OK, "a missing file is an error");
+    expect(sr_world_load("no/such/file.pbrt", NULL, NULL, &world, error, sizeof error) != SR_OK,
+           "a missing file is an error");
     expect(world == NULL && strstr(error, "no/such/file.pbrt") != NULL, "the error names the file");
     printf("steradian %s; of a missing file it says: %s\n", sr_version(), error);
 
@@ -81,7 +83,8 @@ int main(int argc, char **argv)
     memset(&settings, 0, sizeof settings);
     settings.spp = 1;
     struct sr_picture *picture = NULL;
-    expect(sr_world_render(world, &settings, &picture, error, sizeof error) == SR_OK && picture != NULL, "the scene is rendered");
+    expect(sr_world_render(world, &settings, &picture, error, sizeof error) == SR_OK && picture != NULL,
+           "the scene is rendered");
     if (picture)
         look_at_picture(picture);
     sr_picture_destroy(picture);

@@ -204,7 +204,8 @@ TEST(paths_are_seen_from_their_folder)
     EXPECT_EQUAL_TEXT(sr_path_beside(&arena, "a.pbrt", "b.exr"), "b.exr");
     EXPECT_EQUAL_TEXT(sr_path_beside(&arena, "scenes/a.pbrt", "/b.exr"), "/b.exr");
     EXPECT_EQUAL_TEXT(sr_path_beside(&arena, "/a.pbrt", "b.exr"), "/b.exr");
-    EXPECT(sr_path_has_ending("A.EXR", ".exr") && !sr_path_has_ending("exr", ".exr") && !sr_path_has_ending("a.exr.gz", ".exr"));
+    EXPECT(sr_path_has_ending("A.EXR", ".exr") && !sr_path_has_ending("exr", ".exr") &&
+           !sr_path_has_ending("a.exr.gz", ".exr"));
     sr_arena_free(&arena);
 }
 

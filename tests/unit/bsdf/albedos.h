@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* A BSDF from words, and its directional albedo by a quadrature that minds the edges of models.
  *
- *     struct sr_bsdf b = bsdf_of("hapke albedo=0.3 version=1981");     parameters that are not named have their defaults
- *     EXPECT_ALBEDO("minnaert reflectance=0.8 k=1.5", 0.8, 0.744484, 0.565685, 0.333369)      at 0, 30, 60, 80 deg
+ *     struct sr_bsdf b = bsdf_of("hapke albedo=0.3 version=1981");     parameters that are not named have their
+ * defaults EXPECT_ALBEDO("minnaert reflectance=0.8 k=1.5", 0.8, 0.744484, 0.565685, 0.333369)      at 0, 30, 60, 80 deg
  */
 #ifndef SR_TESTS_UNIT_BSDF_ALBEDOS_H
 #define SR_TESTS_UNIT_BSDF_ALBEDOS_H
@@ -64,8 +64,8 @@ static inline double bsdf_value(const struct sr_bsdf *b, sr_vec3 wo, sr_vec3 wi)
 }
 
 /* INTEGRAL f |cos_theta_i| dwi over the side of wo, theta_o < 90 deg: panels of 8 Gauss points, 60 in theta (ends at
- * theta_o, where many models have an edge), 36 in phi on one side of the plane of incidence (ends across it), because the
- * other side is its mirror image. */
+ * theta_o, where many models have an edge), 36 in phi on one side of the plane of incidence (ends across it), because
+ * the other side is its mirror image. */
 static inline double bsdf_albedo_in(const struct sr_bsdf *b, double theta_deg, double phi_deg, enum sr_transport mode)
 {
     enum { POINTS = 8, RINGS = 60, SECTORS = 36 };
@@ -74,12 +74,14 @@ static inline double bsdf_albedo_in(const struct sr_bsdf *b, double theta_deg, d
     sr_gauss_legendre(POINTS, 0, 1, x, w);
     for (int i = 0; i < RINGS; ++i) {
         bool low = i < RINGS / 2;
-        double width = (low ? split : 90 - split) / (RINGS / 2), from = low ? i * width : split + (i - RINGS / 2) * width;
+        double width = (low ? split : 90 - split) / (RINGS / 2),
+               from = low ? i * width : split + (i - RINGS / 2) * width;
         for (int j = 0; j < POINTS; ++j) {
             double theta = from + width * x[j], ring = 0;
             for (int k = 0; k < SECTORS; ++k)
                 for (int l = 0; l < POINTS; ++l)
-                    ring += w[l] * (double)sr_bsdf_f(b, wo, direction(theta, phi_deg + 180.0 / SECTORS * (k + x[l])), mode)[0];
+                    ring += w[l] *
+                            (double)sr_bsdf_f(b, wo, direction(theta, phi_deg + 180.0 / SECTORS * (k + x[l])), mode)[0];
             double t = theta * QUADRATURE_PI / 180;
             sum += w[j] * width * QUADRATURE_PI / 180 * ring * 2 * QUADRATURE_PI / SECTORS * sin(t) * cos(t);
         }

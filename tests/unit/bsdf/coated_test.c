@@ -145,7 +145,8 @@ TEST(weights_of_pbrt_do_not_sum_to_one)
     EXPECT_NEAR((theirs.mean - coat) / (ours.mean - coat), 1.08, 0.03);
 }
 
-/* Both smooth, nothing between: a mirror with the series F + T^2 Fc / (1 - F Fc), each crossing of the metal's light. */
+/* Both smooth, nothing between: a mirror with the series F + T^2 Fc / (1 - F Fc), each crossing of the metal's light.
+ */
 TEST(mirror_under_glass_is_a_series_of_bounces)
 {
     struct sr_bsdf_coated c = {

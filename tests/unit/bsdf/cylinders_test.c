@@ -49,13 +49,15 @@ TEST(poulin_fournier_is_what_rays_find_between_cylinders)
             double theta = 88 * (double)sr_rng_float(&rng);
             w[k] = direction(theta, 360 * (double)sr_rng_float(&rng));
         }
-        double f = traced(2.6, 0.4, (double[]){0.3, 0.5, 15}, w[0], w[1]), g = traced(2, 0, (double[]){0.3, 0.5, 200}, w[0], w[1]);
+        double f = traced(2.6, 0.4, (double[]){0.3, 0.5, 15}, w[0], w[1]),
+               g = traced(2, 0, (double[]){0.3, 0.5, 200}, w[0], w[1]);
         EXPECT_NEAR(bsdf_value(&b, w[0], w[1]), f, 2e-3 * f + 1e-4);
         EXPECT_NEAR(bsdf_value(&dense, w[0], w[1]), g, 2e-3 * g + 1e-4);
     }
 }
 
-/* The figures for distance 2 and 3 across the cylinders are of a sum over rays, 40000 points of the profile by 400 directions. */
+/* The figures for distance 2 and 3 across the cylinders are of a sum over rays, 40000 points of the profile by 400
+ * directions. */
 TEST(poulin_fournier_reflects_as_was_computed)
 {
 #define MATTE "poulin_fournier reflectance=1 specular=0 height=0 distance="

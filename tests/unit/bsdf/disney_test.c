@@ -6,8 +6,9 @@ static const double theta[4] = {0, 30, 60, 80};
 
 TEST(disney_has_its_printed_albedos)
 {
-    static const double plain[4] = {.539635, .539326, .559672, .644675}, metal[4] = {.457920, .452315, .438647, .468901},
-                        flat[4] = {.413783, .447131, .595003, .787556}, chalk[4] = {1.048021, 1.047541, 1.075627, 1.307418};
+    static const double plain[4] = {.539635, .539326, .559672, .644675},
+                        metal[4] = {.457920, .452315, .438647, .468901}, flat[4] = {.413783, .447131, .595003, .787556},
+                        chalk[4] = {1.048021, 1.047541, 1.075627, 1.307418};
     struct sr_bsdf b[4] = {specimen("disney", NULL), specimen("disney", "metallic", 1.0, NULL),
                            specimen("disney", "subsurface", 1.0, NULL),
                            specimen("disney", "reflectance", 1.0, "roughness", 1.0, NULL)};
@@ -31,7 +32,8 @@ static double difference(const void *context, sr_vec3 wi) // of two models' f, t
 TEST(burleys_diffuse_lobe_has_its_closed_albedo)
 {
     static const double E[4] = {1.00595238095, 1.00516746422, 1.00832015749, 1.02538775313};
-    struct sr_bsdf pair[2] = {specimen("disney", "reflectance", 1.0, NULL), specimen("disney", "reflectance", 0.0, NULL)};
+    struct sr_bsdf pair[2] = {specimen("disney", "reflectance", 1.0, NULL),
+                              specimen("disney", "reflectance", 0.0, NULL)};
     for (int i = 0; i < 4; ++i) {
         struct albedo_query q = {pair, direction(theta[i], 0)};
         EXPECT_RELATIVE(hemisphere_integral(difference, &q, 1, 160), E[i], 1e-5);
@@ -54,8 +56,10 @@ TEST(disneys_clear_coat_has_its_printed_albedo)
 /* A tint keeps the luminance: of a grey base nothing changes. */
 TEST(grey_has_no_tint)
 {
-    struct sr_bsdf a = specimen("disney", "reflectance", 0.3, "specular_tint", 1.0, "sheen", 1.0, "sheen_tint", 1.0, NULL);
-    struct sr_bsdf b = specimen("disney", "reflectance", 0.3, "specular_tint", 0.0, "sheen", 1.0, "sheen_tint", 0.0, NULL);
+    struct sr_bsdf a =
+        specimen("disney", "reflectance", 0.3, "specular_tint", 1.0, "sheen", 1.0, "sheen_tint", 1.0, NULL);
+    struct sr_bsdf b =
+        specimen("disney", "reflectance", 0.3, "specular_tint", 0.0, "sheen", 1.0, "sheen_tint", 0.0, NULL);
     for (int i = 0; i < 4; ++i)
         EXPECT_RELATIVE(sr_bsdf_f(&a, direction(theta[i], 0), direction(40, 130), SR_RADIANCE)[0],
                         sr_bsdf_f(&b, direction(theta[i], 0), direction(40, 130), SR_RADIANCE)[0], 1e-6);

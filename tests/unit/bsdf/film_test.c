@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Thin films and optical coatings: printed values, and the product of characteristic matrices in double precision, which
- * is another way to the same light. */
+/* Thin films and optical coatings: printed values, and the product of characteristic matrices in double precision,
+ * which is another way to the same light. */
 #include "quadrature.h"
 
 #include "bsdf/film.h"
@@ -37,7 +37,8 @@ static void characteristic_matrix(const struct slab *slabs, int count, double n0
 
 static struct film_stack stack_of(const struct slab *slabs, int count, double n, double k)
 {
-    struct film_stack f = {.film_count = count, .layer_count = count, .n = SR_BLACK + (float)n, .k = SR_BLACK + (float)k};
+    struct film_stack f = {
+        .film_count = count, .layer_count = count, .n = SR_BLACK + (float)n, .k = SR_BLACK + (float)k};
     for (int i = 0; i < count; ++i) {
         f.films[i] = (struct film){SR_BLACK + (float)slabs[i].n, SR_BLACK + (float)slabs[i].k, (float)slabs[i].d};
         f.sequence[i] = (uint8_t)i;
@@ -66,8 +67,8 @@ TEST(films_match_the_characteristic_matrix)
                 slabs[count - 1 - i] = swap;
             }
         for (int polarised = 0; polarised < 2; ++polarised) {
-            characteristic_matrix(slabs, count, from_below ? n : 1, from_below ? 1 : n + I * k, lambda, c, polarised, &R,
-                                  &T);
+            characteristic_matrix(slabs, count, from_below ? n : 1, from_below ? 1 : n + I * k, lambda, c, polarised,
+                                  &R, &T);
             EXPECT_NEAR((polarised ? p.Rp : p.Rs)[0], R, 2e-5);
             EXPECT_NEAR((polarised ? p.Tp : p.Ts)[0], T, 2e-5 + 2e-4 * T);
             if (clear)
@@ -110,7 +111,8 @@ TEST(quarter_wave_and_soap_film_reflect_as_the_closed_form_says)
                         soap[3] = {0.0999111428613, 0.0482649076976, 0.00189098238075};
     double n1 = 1.38, n2 = 1.52;
     struct sr_bsdf glass = specimen("thin_film_dielectric", "film_thickness", 99.6377, "film_eta", n1, "eta", n2, NULL);
-    struct sr_bsdf bubble = specimen("thin_film_dielectric", "film_thickness", 300.0, "film_eta", 1.33, "eta", 1.0, NULL);
+    struct sr_bsdf bubble =
+        specimen("thin_film_dielectric", "film_thickness", 300.0, "film_eta", 1.33, "eta", 1.0, NULL);
     for (int i = 0; i < 3; ++i) {
         struct sr_bsdf_sample s;
         specimen_ready(&glass, (float)lambda[i]);
@@ -134,7 +136,8 @@ TEST(quarter_wave_and_soap_film_reflect_as_the_closed_form_says)
 /* A quarter wave of index sqrt(n) makes glass black; half a wave is as if it were not there. */
 TEST(quarter_and_half_waves)
 {
-    struct sr_bsdf quarter = specimen("thin_film_dielectric", "film_eta", 2.0, "eta", 4.0, "film_thickness", 68.75, NULL);
+    struct sr_bsdf quarter =
+        specimen("thin_film_dielectric", "film_eta", 2.0, "eta", 4.0, "film_thickness", 68.75, NULL);
     struct sr_bsdf half = specimen("thin_film_dielectric", "film_eta", 2.0, "eta", 1.5, "film_thickness", 137.5, NULL);
     EXPECT_NEAR(quarter.model->albedo(quarter.data, direction(0, 0))[0], 1, 1e-6);
     struct sr_bsdf_sample s;
@@ -150,7 +153,8 @@ TEST(films_of_no_thickness_are_not_there)
     struct sr_bsdf film = specimen("thin_film_conductor", "film_thickness", 0.0, "alpha_x", 0.3, "alpha_y", 0.2, NULL);
     struct sr_bsdf none = specimen("multilayer_conductor", "layer_count", 0.0, "alpha_x", 0.3, "alpha_y", 0.2, NULL);
     struct sr_bsdf metal = specimen("conductor", "alpha_x", 0.3, "alpha_y", 0.2, NULL);
-    struct sr_bsdf film_d = specimen("thin_film_dielectric", "film_thickness", 0.0, "alpha_x", 0.3, "alpha_y", 0.2, NULL);
+    struct sr_bsdf film_d =
+        specimen("thin_film_dielectric", "film_thickness", 0.0, "alpha_x", 0.3, "alpha_y", 0.2, NULL);
     struct sr_bsdf none_d = specimen("multilayer_dielectric", "layer_count", 0.0, "alpha_x", 0.3, "alpha_y", 0.2, NULL);
     struct sr_bsdf glass = specimen("dielectric", "alpha_x", 0.3, "alpha_y", 0.2, NULL);
     struct sr_rng rng = sr_rng_seed(22, 1);
@@ -171,7 +175,8 @@ TEST(films_of_no_thickness_are_not_there)
 TEST(dielectric_mirror_has_its_printed_reflectances)
 {
     double H = 550 / (4 * 2.35), L = 550 / (4 * 1.38);
-    struct slab slabs[7] = {{2.35, 0, H}, {1.38, 0, L}, {2.35, 0, H}, {1.38, 0, L}, {2.35, 0, H}, {1.38, 0, L}, {2.35, 0, H}};
+    struct slab slabs[7] = {{2.35, 0, H}, {1.38, 0, L}, {2.35, 0, H}, {1.38, 0, L},
+                            {2.35, 0, H}, {1.38, 0, L}, {2.35, 0, H}};
     struct film_stack f = stack_of(slabs, 7, 1.52, 0);
     static const double theta[4] = {0, 30, 60, 80},
                         R[4][2] = {{.955855, .955855}, {.968879, .926670}, {.983036, .537311}, {.993032, .397242}};
@@ -193,11 +198,12 @@ TEST(dielectric_mirror_has_its_printed_reflectances)
 /* Rough and clear: what a facet does not reflect it lets through, so that films only move light between the two. */
 TEST(rough_clear_films_return_as_much_as_bare_glass_does)
 {
-    struct sr_bsdf film = specimen("thin_film_dielectric", "film_eta", 2.3, "film_thickness", 60.0, "alpha_x", 0.3,
-                                   "alpha_y", 0.3, NULL);
+    struct sr_bsdf film =
+        specimen("thin_film_dielectric", "film_eta", 2.3, "film_thickness", 60.0, "alpha_x", 0.3, "alpha_y", 0.3, NULL);
     struct sr_bsdf glass = specimen("dielectric", "alpha_x", 0.3, "alpha_y", 0.3, NULL);
     for (int theta = 10; theta < 80; theta += 30) {
-        double more = albedo_toward(&film, direction(theta, 0), 1, 96) - albedo_toward(&glass, direction(theta, 0), 1, 96);
+        double more =
+            albedo_toward(&film, direction(theta, 0), 1, 96) - albedo_toward(&glass, direction(theta, 0), 1, 96);
         double less =
             albedo_toward(&glass, direction(theta, 0), -1, 160) - albedo_toward(&film, direction(theta, 0), -1, 160);
         EXPECT(more > 0.1);
@@ -238,8 +244,8 @@ TEST(layers_come_from_files)
     EXPECT_NEAR(s.f[0] * s.wi.z, (Rs + Rp) / 2, 1e-6);
     EXPECT(b.model->albedo(b.data, direction(30, 0))[0] < 0.999f);
 
-    static const char *const bad[] = {"1.5 0", "1.5 0 100 7", "1.5 zero 100", "1.5 0 nan", "-1 0 100", "1.5 0 1e9",
-                                      "1.5 0 100\n1\n"};
+    static const char *const bad[] = {"1.5 0",    "1.5 0 100 7", "1.5 zero 100",  "1.5 0 nan",
+                                      "-1 0 100", "1.5 0 1e9",   "1.5 0 100\n1\n"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; ++i)
         EXPECT(read_layers(bad[i], strlen(bad[i]), &b, &arena) == SR_ERROR_INPUT);
     EXPECT(read_layers("1.5 0 100\n\0junk", 15, &b, &arena) == SR_ERROR_INPUT);

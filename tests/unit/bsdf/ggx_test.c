@@ -9,7 +9,8 @@ static sr_vec3 direction(double theta_deg, double phi_deg)
     return (sr_vec3){(float)(sin(t) * cos(p)), (float)(sin(t) * sin(p)), (float)cos(t)};
 }
 
-/* INTEGRAL g(wi) dwi over the hemisphere z > 0 (side 1) or z < 0 (side -1). Gauss-Legendre in theta, trapezoid in phi. */
+/* INTEGRAL g(wi) dwi over the hemisphere z > 0 (side 1) or z < 0 (side -1). Gauss-Legendre in theta, trapezoid in phi.
+ */
 static double hemisphere(double (*g)(void *, sr_vec3), void *context, int side, int n)
 {
     static double x[512], w[512];

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What rounding does where light just skims a surface, or hardly notices it: values that were found wrong by certificates. */
+/* What rounding does where light just skims a surface, or hardly notices it: values that were found wrong by
+ * certificates. */
 #include "bsdf/facets_interface.h"
 #include "quadrature.h"
 
@@ -21,7 +22,8 @@ TEST(grazing_samples_agree_with_f)
 {
     struct sr_bsdf b = specimen("microfacet_dielectric", "distribution", 1.0, "masking", 2.0, "eta", 0.8809, "alpha_x",
                                 0.09748, "alpha_y", 0.0116, NULL);
-    sr_vec3 wo = {0x1.9cc09cp-1f, -0x1.2ef386p-1f, 0x1.afb7d4p-14f}, wi = {-0x1.9cc0aap-1f, 0x1.2ef374p-1f, 0x1.2a2748p-14f};
+    sr_vec3 wo = {0x1.9cc09cp-1f, -0x1.2ef386p-1f, 0x1.afb7d4p-14f},
+            wi = {-0x1.9cc0aap-1f, 0x1.2ef374p-1f, 0x1.2a2748p-14f};
     float p, q;
     sr_spectrum f = sr_bsdf_f_pdf(&b, wo, wi, SR_RADIANCE, &p), g = sr_bsdf_f_pdf(&b, wi, wo, SR_RADIANCE, &q);
     EXPECT_RELATIVE(f[0], 1.697e7, 5e-3);
@@ -29,7 +31,8 @@ TEST(grazing_samples_agree_with_f)
     EXPECT_RELATIVE(g[0], (double)f[0], 1e-6); // the same half vector, the same cosine
 }
 
-/* B(x, 3) = 2 / (x (x + 1) (x + 2)): heights that work against each other at grazing, where logarithms were off by 1e-3. */
+/* B(x, 3) = 2 / (x (x + 1) (x + 2)): heights that work against each other at grazing, where logarithms were off by
+ * 1e-3. */
 TEST(masking_of_what_passes_keeps_its_digits_at_grazing)
 {
     for (float x = 1; x < 2e5f; x *= 3) {
@@ -42,8 +45,8 @@ TEST(masking_of_what_passes_keeps_its_digits_at_grazing)
 /* OpenPBR's glass without specular weight has the index 1: light goes straight on, whatever the roughness. */
 TEST(openpbr_glass_of_index_one_lets_light_go_on)
 {
-    struct sr_bsdf b = specimen("openpbr", "transmission_weight", 1.0, "specular_weight", 0.0, "transmission_color", 0.7,
-                                "specular_roughness", 0.4, NULL);
+    struct sr_bsdf b = specimen("openpbr", "transmission_weight", 1.0, "specular_weight", 0.0, "transmission_color",
+                                0.7, "specular_roughness", 0.4, NULL);
     EXPECT((sr_bsdf_lobes(&b) & SR_LOBE_SPECULAR) != 0);
     struct sr_rng rng = sr_rng_seed(9, 1);
     for (int side = -1; side <= 1; side += 2) {
@@ -67,8 +70,9 @@ TEST(openpbr_glass_of_index_one_lets_light_go_on)
 /* A rough coat's walk leaves by two ways; where the draw of one fails, the other was dropped: f lost up to a fifth. */
 TEST(coated_metal_describes_the_light_it_sends)
 {
-    struct sr_bsdf b = specimen("coated_conductor", "eta", 0.02, "k", 6.0, "coat_eta", 0.6, "coat_alpha_x", 0.3, "coat_alpha_y", 1.0,
-                                "base_alpha_x", 0.5, "base_alpha_y", 0.5, "thickness", 0.0, "max_depth", 100.0, NULL);
+    struct sr_bsdf b =
+        specimen("coated_conductor", "eta", 0.02, "k", 6.0, "coat_eta", 0.6, "coat_alpha_x", 0.3, "coat_alpha_y", 1.0,
+                 "base_alpha_x", 0.5, "base_alpha_y", 0.5, "thickness", 0.0, "max_depth", 100.0, NULL);
     struct sr_rng rng = sr_rng_seed(10, 1);
     sr_vec3 wo = direction(40, 60);
     struct sr_tally described = {0}, drawn = {0};

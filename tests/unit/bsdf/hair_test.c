@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* Hair: nothing is lost that is not absorbed, absorption is the path's through a cylinder, and lobes stand where a smooth
- * cylinder sends light. */
+/* Hair: nothing is lost that is not absorbed, absorption is the path's through a cylinder, and lobes stand where a
+ * smooth cylinder sends light. */
 #include "quadrature.h"
 
-/* INTEGRAL g dwi over the sphere, in the hair's own coordinates: sin theta along x by Gauss-Legendre, phi by midpoints. */
+/* INTEGRAL g dwi over the sphere, in the hair's own coordinates: sin theta along x by Gauss-Legendre, phi by midpoints.
+ */
 static double all_around(const struct sr_bsdf *b, sr_vec3 wo, double (*g)(const void *, sr_vec3))
 {
     enum { ALONG = 120, AROUND = 256 };
@@ -91,7 +92,8 @@ TEST(hair_scales_shift_the_highlight)
     }
 }
 
-/* The two forms of Bessel's function meet at 12, seen through M: a jump there would show in its integral over beta_m. */
+/* The two forms of Bessel's function meet at 12, seen through M: a jump there would show in its integral over beta_m.
+ */
 TEST(hair_is_normalised_at_every_roughness)
 {
     for (double beta = 0.16; beta < 1; beta += 0.04) {
@@ -109,7 +111,8 @@ TEST(hair_takes_its_absorption_from_a_colour)
     EXPECT_RELATIVE(a.model->albedo(a.data, direction(30, 20))[0], b.model->albedo(b.data, direction(30, 20))[0], 1e-6);
 }
 
-/* Melanin is absorption: what d'Eon et al. give for red, green and blue, at three wavelengths, and monotonic between. */
+/* Melanin is absorption: what d'Eon et al. give for red, green and blue, at three wavelengths, and monotonic between.
+ */
 TEST(hair_is_dyed_by_melanin)
 {
     static const double nm[3] = {610, 545, 465}, eu[3] = {.419, .697, 1.37}, pheo[3] = {.187, .4, 1.05};

@@ -7,8 +7,8 @@ TEST(blinn_phong_returns_all_that_arrives_along_the_normal)
     EXPECT_ALBEDO("blinn_phong reflectance=0 specular=1 exponent=20", 1, 0.775700, 0.327950, 0.110907);
     EXPECT_ALBEDO("blinn_phong reflectance=0 specular=1 exponent=50", 1, 0.7600030083, 0.280649183625, 0.0664218732579);
     EXPECT_ALBEDO("blinn_phong reflectance=0 specular=1 exponent=100", 1, 0.755000, 0.265058, 0.049448);
-    EXPECT_ALBEDO("blinn_phong reflectance=0.3 specular=0.5 exponent=20", 0.8, 0.3 + 0.5 * 0.775700, 0.3 + 0.5 * 0.327950,
-                  0.3 + 0.5 * 0.110907);
+    EXPECT_ALBEDO("blinn_phong reflectance=0.3 specular=0.5 exponent=20", 0.8, 0.3 + 0.5 * 0.775700,
+                  0.3 + 0.5 * 0.327950, 0.3 + 0.5 * 0.110907);
 }
 
 TEST(blinn_phong_with_the_usual_fit_makes_light)
@@ -34,7 +34,8 @@ TEST(ashikhmin_shirley_reflects_as_its_equations_integrate)
 #define EVEN(n) "ashikhmin_shirley exponent_x=" #n " exponent_y=" #n
     EXPECT_ALBEDO(EVEN(100) " specular=1 reflectance=0", 0.961165, 0.933701, 0.845943, 0.659848);
     EXPECT_ALBEDO(EVEN(100) " specular=0.05 reflectance=0", 0.048058, 0.046801, 0.069181, 0.221629);
-    EXPECT_ALBEDO(EVEN(100) " specular=0.05 reflectance=0.5", 0.508214509767, 0.493967771281, 0.431461030118, 0.395005533193);
+    EXPECT_ALBEDO(EVEN(100) " specular=0.05 reflectance=0.5", 0.508214509767, 0.493967771281, 0.431461030118,
+                  0.395005533193);
 #define BRUSHED "ashikhmin_shirley exponent_x=10 exponent_y=500 specular=1 reflectance=0"
     EXPECT_ALBEDO(BRUSHED, 0.836902, 0.798824, 0.666154, 0.557126);
     EXPECT_ALBEDO_ALONG(90, BRUSHED, 0.836902, 0.831872, 0.809932, 0.712381);
@@ -42,7 +43,8 @@ TEST(ashikhmin_shirley_reflects_as_its_equations_integrate)
 
 TEST(ashikhmin_shirley_matte_part_gives_way_to_the_surface)
 {
-    struct sr_bsdf with = bsdf_of(EVEN(100) " specular=0.05 reflectance=0.5"), without = bsdf_of(EVEN(100) " specular=0.05 reflectance=0");
+    struct sr_bsdf with = bsdf_of(EVEN(100) " specular=0.05 reflectance=0.5"),
+                   without = bsdf_of(EVEN(100) " specular=0.05 reflectance=0");
     const double theta[] = {0, 30, 60, 80}, expected[] = {0.460156, 0.447167, 0.362280, 0.173376};
     for (int i = 0; i < 4; ++i)
         EXPECT_NEAR(bsdf_albedo(&with, theta[i], 0) - bsdf_albedo(&without, theta[i], 0), expected[i], 5e-6);
@@ -50,9 +52,10 @@ TEST(ashikhmin_shirley_matte_part_gives_way_to_the_surface)
 
 TEST(lafortune_reflects_as_its_equations_integrate)
 {
-    EXPECT_ALBEDO("lafortune reflectance=0 specular=1 c_x=-0.95 c_y=-0.95 c_z=0.85 exponent=10 normalisation=none", 0.103083,
-                  0.117167, 0.113137, 0.065603);
-    struct sr_bsdf b = bsdf_of("lafortune reflectance=0 specular=1 c_x=0.2 c_y=0.1 c_z=0.7 exponent=6 normalisation=none");
+    EXPECT_ALBEDO("lafortune reflectance=0 specular=1 c_x=-0.95 c_y=-0.95 c_z=0.85 exponent=10 normalisation=none",
+                  0.103083, 0.117167, 0.113137, 0.065603);
+    struct sr_bsdf b =
+        bsdf_of("lafortune reflectance=0 specular=1 c_x=0.2 c_y=0.1 c_z=0.7 exponent=6 normalisation=none");
     EXPECT_RELATIVE(bsdf_albedo(&b, 0, 0), 2 * QUADRATURE_PI / 8 * pow(0.7, 6), 1e-5);
 }
 
@@ -69,7 +72,8 @@ TEST(lafortune_can_be_modified_phong_or_a_retroreflector)
     }
 }
 
-/* Reflectances were computed for Strauss' own formula without 1 / pi and (e + 1) / (2 pi), under light from everywhere; e = 7.5 */
+/* Reflectances were computed for Strauss' own formula without 1 / pi and (e + 1) / (2 pi), under light from everywhere;
+ * e = 7.5 */
 TEST(strauss_reflects_as_its_equations_integrate)
 {
     struct sr_bsdf b = bsdf_of("strauss smoothness=0.6 metalness=0.5 reflectance=0.5");
@@ -102,8 +106,8 @@ TEST(highlights_do_not_care_which_way_light_goes)
     }
 }
 
-/* cos^n of a float cosine is lost where the lobe is narrow; by sine and cosine it is not: at n = 1e5, one thousandth of a
- * radian from the mirror direction, cos^n = exp(-n / 2 d^2). */
+/* cos^n of a float cosine is lost where the lobe is narrow; by sine and cosine it is not: at n = 1e5, one thousandth of
+ * a radian from the mirror direction, cos^n = exp(-n / 2 d^2). */
 TEST(highlights_are_exact_where_they_are_narrow)
 {
     const double n = 1e5, d = 1e-3 * 180 / QUADRATURE_PI;

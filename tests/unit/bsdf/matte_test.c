@@ -4,9 +4,11 @@
 
 TEST(oren_nayar_reflects_as_its_equations_integrate)
 {
-    EXPECT_ALBEDO("oren_nayar reflectance=0.9 sigma=0.5235987756 variant=qualitative", 0.695798, 0.732880, 0.786699, 0.829379);
+    EXPECT_ALBEDO("oren_nayar reflectance=0.9 sigma=0.5235987756 variant=qualitative", 0.695798, 0.732880, 0.786699,
+                  0.829379);
     EXPECT_ALBEDO("oren_nayar reflectance=0.9 sigma=0.5235987756", 0.789205, 0.791965, 0.817478, 0.861554);
-    EXPECT_ALBEDO("oren_nayar reflectance=1 sigma=0.5 variant=qualitative", 0.784482758691, 0.82472469096, 0.883128419881, 0.92944459343);
+    EXPECT_ALBEDO("oren_nayar reflectance=1 sigma=0.5 variant=qualitative", 0.784482758691, 0.82472469096,
+                  0.883128419881, 0.92944459343);
     EXPECT_ALBEDO("oren_nayar reflectance=1 sigma=0.5", 0.896325, 0.899320, 0.927006, 0.974838);
 }
 
@@ -39,7 +41,8 @@ TEST(eon_keeps_all_light_and_fon_loses_what_it_should)
     EXPECT_ALBEDO("eon reflectance=0.8 roughness=0.5", 0.778234, 0.779408, 0.786883, 0.795563);
     EXPECT_ALBEDO("eon variant=fon reflectance=0.8 roughness=0.5", 0.699364, 0.704790, 0.739351, 0.779484);
     EXPECT_ALBEDO("eon variant=fon reflectance=1 roughness=1", 0.776522, 0.788571, 0.865320, 0.954442);
-    EXPECT_ALBEDO("eon variant=fon reflectance=1 roughness=0.5", 0.874204808855, 0.880987224927, 0.924188697546, 0.97435554002);
+    EXPECT_ALBEDO("eon variant=fon reflectance=1 roughness=0.5", 0.874204808855, 0.880987224927, 0.924188697546,
+                  0.97435554002);
     EXPECT_ALBEDO("eon reflectance=0.3 roughness=0", 0.3, 0.3, 0.3, 0.3);
 }
 
@@ -47,16 +50,19 @@ TEST(minnaert_reflects_by_powers_of_the_cosines)
 {
     EXPECT_ALBEDO("minnaert reflectance=0.8 k=1.5", 0.8, 0.744484, 0.565685, 0.333369);
     EXPECT_ALBEDO("minnaert reflectance=0.8 k=1", 0.8, 0.8, 0.8, 0.8);
-    // more than arrives, as documented; Gauss's panels converge slowly on cos^(k-1): a finer word about k < 1 is the closed form
+    // more than arrives, as documented; Gauss's panels converge slowly on cos^(k-1): a finer word about k < 1 is the
+    // closed form
     EXPECT_ALBEDO("minnaert reflectance=0.8 k=0.75", 0.8, 0.829292, 0.951366, 1.239289);
     // f = (A / pi) (mu mu0)^(k - 1) with A = 0.5
-    EXPECT_ALBEDO("minnaert reflectance=0.5555555556 k=0.8", 0.555555555556, 0.57177000498, 0.638165752776, 0.788485023771);
+    EXPECT_ALBEDO("minnaert reflectance=0.5555555556 k=0.8", 0.555555555556, 0.57177000498, 0.638165752776,
+                  0.788485023771);
 }
 
 /* with its mirror, which no quadrature sees: E = R + reflectance (1 - R) */
 TEST(coupled_gives_its_matter_what_its_mirror_leaves)
 {
-    struct sr_bsdf b = bsdf_of("coupled reflectance=0.5 specular=0.05"), white = bsdf_of("coupled reflectance=1 specular=0.3");
+    struct sr_bsdf b = bsdf_of("coupled reflectance=0.5 specular=0.05"),
+                   white = bsdf_of("coupled reflectance=1 specular=0.3");
     const double theta[] = {0, 30, 60, 80}, expected[] = {0.525000, 0.525021, 0.539844, 0.708028};
     for (int i = 0; i < 4; ++i) {
         sr_vec3 wo = direction(theta[i], 40);
@@ -70,8 +76,13 @@ TEST(coupled_gives_its_matter_what_its_mirror_leaves)
 
 TEST(matte_models_do_not_care_which_way_light_goes)
 {
-    const char *models[] = {"oren_nayar sigma=0.7", "oren_nayar variant=qualitative sigma=0.7", "eon roughness=1",
-                            "eon variant=fon roughness=1", "minnaert k=0.6", "minnaert k=2", "coupled"};
+    const char *models[] = {"oren_nayar sigma=0.7",
+                            "oren_nayar variant=qualitative sigma=0.7",
+                            "eon roughness=1",
+                            "eon variant=fon roughness=1",
+                            "minnaert k=0.6",
+                            "minnaert k=2",
+                            "coupled"};
     for (size_t i = 0; i < sizeof models / sizeof models[0]; ++i) {
         struct sr_bsdf b = bsdf_of(models[i]);
         EXPECT(bsdf_asymmetry(&b, 20000) < 2e-6);

@@ -63,7 +63,8 @@ TEST(measured_material_evaluates_and_draws_its_file)
         if (drawn)
             EXPECT_RELATIVE(s.pdf, sr_bsdf_pdf(&b, wo, s.wi, SR_RADIANCE), 0);
     }
-    // INTEGRAL of (2 + c) c / 10 over the hemisphere = pi/5 + 2 pi / 30; the table's chords lie lower by 0.0013 of the second
+    // INTEGRAL of (2 + c) c / 10 over the hemisphere = pi/5 + 2 pi / 30; the table's chords lie lower by 0.0013 of the
+    // second
     double expected = 3.14159265 * (0.2 + (1 - 0.0013 * 1.5) / 15);
     EXPECT_NEAR(tally.mean, expected, 4.9 * sr_tally_standard_error(&tally) + 5e-4);
     sr_arena_free(&arena);

@@ -162,8 +162,8 @@ TEST(torrance_sparrow_tends_to_cook_torrance)
     }
 }
 
-/* At normal incidence D / 4 is seen in the mirror's direction, and facets that are tilted by more than 45 degrees send light
- * below: the share (1/2)^((n + 2) / 2) of each azimuth, which the density lacks. */
+/* At normal incidence D / 4 is seen in the mirror's direction, and facets that are tilted by more than 45 degrees send
+ * light below: the share (1/2)^((n + 2) / 2) of each azimuth, which the density lacks. */
 TEST(phong_facets_are_normalised)
 {
     struct sr_bsdf b = white(PHONG, V_CAVITY, 0.2, 0.2);

@@ -17,7 +17,8 @@ TEST(white_rough_metal_returns_all_light)
     EXPECT(worst < 3e-4);
 }
 
-/* E_avg of the single bounce, tabulated elsewhere, is what the many bounces make up for: with F = 1 they carry 1 - E_avg. */
+/* E_avg of the single bounce, tabulated elsewhere, is what the many bounces make up for: with F = 1 they carry 1 -
+ * E_avg. */
 TEST(bounces_carry_what_one_of_them_loses)
 {
     static const double alpha[5] = {0.1, 0.25, 0.5, 0.75, 1},
@@ -92,7 +93,8 @@ TEST(ground_glass_returns_all_light)
     EXPECT_SAMPLES(&b.all, b.wo, -1, 1 - R);
 }
 
-/* Glass of eta 1.5, alpha 0.5: R + T of single events, tabulated elsewhere (masking beta), are what the rest makes up for. */
+/* Glass of eta 1.5, alpha 0.5: R + T of single events, tabulated elsewhere (masking beta), are what the rest makes up
+ * for. */
 TEST(glass_bounces_carry_what_single_events_lose)
 {
     static const double theta[4] = {0, 30, 60, 80},

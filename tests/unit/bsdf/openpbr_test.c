@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* OpenPBR's surface: what it becomes where only one of its slabs is left, and that joined slabs keep the light's sum. */
+/* OpenPBR's surface: what it becomes where only one of its slabs is left, and that joined slabs keep the light's sum.
+ */
 #include "quadrature.h"
 
 static void pair(struct sr_rng *rng, sr_vec3 w[2])
@@ -30,7 +31,8 @@ TEST(openpbr_glass_is_ground_glass)
 /* Without gloss (specular_weight 0) the matte slab is EON itself. */
 TEST(openpbr_matte_is_eon)
 {
-    struct sr_bsdf a = specimen("openpbr", "specular_weight", 0.0, "base_color", 0.7, "base_diffuse_roughness", 0.6, NULL);
+    struct sr_bsdf a =
+        specimen("openpbr", "specular_weight", 0.0, "base_color", 0.7, "base_diffuse_roughness", 0.6, NULL);
     struct sr_bsdf b = specimen("eon", "reflectance", 0.7, "roughness", 0.6, NULL);
     double theta[3] = {10, 40, 70};
     for (int i = 0; i < 3; ++i) {
@@ -47,7 +49,8 @@ TEST(openpbr_metal_has_the_fresnel_curve_of_its_colours)
                                 "specular_roughness", 0.3, NULL);
     struct sr_bsdf b = specimen("openpbr", "base_metalness", 1.0, "base_color", 1.0, "specular_color", 1.0,
                                 "specular_roughness", 0.3, NULL); // F = 1
-    double theta[3] = {0, acos(1 / 7.0) * 180 / QUADRATURE_PI, 89.99}, F[3] = {0.6, 0.5 * (0.6 + 0.4 * pow(6 / 7.0, 5)), 1};
+    double theta[3] = {0, acos(1 / 7.0) * 180 / QUADRATURE_PI, 89.99},
+           F[3] = {0.6, 0.5 * (0.6 + 0.4 * pow(6 / 7.0, 5)), 1};
     for (int i = 0; i < 3; ++i) {
         sr_vec3 wo = direction(theta[i], 0), wi = {-wo.x, -wo.y, wo.z};
         EXPECT_RELATIVE(sr_bsdf_f(&a, wo, wi, SR_RADIANCE)[0] / sr_bsdf_f(&b, wo, wi, SR_RADIANCE)[0], F[i], 2e-3);
@@ -65,13 +68,14 @@ TEST(openpbr_gloss_over_white_keeps_the_sum)
     }
 }
 
-/* A smooth coat over a matte base, gloss aside, is the coated Lambert surface of Saunderson: the coat's mirror left out. */
+/* A smooth coat over a matte base, gloss aside, is the coated Lambert surface of Saunderson: the coat's mirror left
+ * out. */
 TEST(openpbr_coat_over_matte_is_saundersons)
 {
-    struct sr_bsdf a = specimen("openpbr", "base_color", 0.5, "specular_ior", 1.5, "specular_weight", 0.0, "coat_weight",
-                                1.0, "coat_ior", 1.5, NULL);
-    struct sr_bsdf b = specimen("coated_diffuse", "reflectance", 0.5, "coat_eta", 1.5, "thickness", 0.0, "max_depth",
-                                100.0, NULL);
+    struct sr_bsdf a = specimen("openpbr", "base_color", 0.5, "specular_ior", 1.5, "specular_weight", 0.0,
+                                "coat_weight", 1.0, "coat_ior", 1.5, NULL);
+    struct sr_bsdf b =
+        specimen("coated_diffuse", "reflectance", 0.5, "coat_eta", 1.5, "thickness", 0.0, "max_depth", 100.0, NULL);
     for (int theta = 5; theta < 60; theta += 15) {
         sr_vec3 wo = direction(theta, 0), wi = direction(20, 120);
         EXPECT_RELATIVE(sr_bsdf_f(&a, wo, wi, SR_RADIANCE)[0], sr_bsdf_f(&b, wo, wi, SR_RADIANCE)[0], 0.04);
@@ -85,18 +89,19 @@ TEST(openpbr_coat_color_is_its_transmittance)
     struct sr_bsdf b = specimen("openpbr", "coat_weight", 1.0, "coat_color", 1.0, NULL);
     sr_vec3 n = direction(30, 0), w = direction(30, 90);
     double cosine = sqrt(1 - 0.25 / (1.6 * 1.6));
-    EXPECT_RELATIVE(sr_bsdf_f(&a, n, w, SR_RADIANCE)[0] / sr_bsdf_f(&b, n, w, SR_RADIANCE)[0], pow(0.4, 1 / cosine), 1e-3);
+    EXPECT_RELATIVE(sr_bsdf_f(&a, n, w, SR_RADIANCE)[0] / sr_bsdf_f(&b, n, w, SR_RADIANCE)[0], pow(0.4, 1 / cosine),
+                    1e-3);
 }
 
 TEST(openpbr_makes_no_light_under_any_layer)
 {
     struct sr_rng rng = sr_rng_seed(52, 1);
     for (int set = 0; set < 60; ++set) {
-        struct sr_bsdf b = specimen("openpbr", "base_color", 1.0, "base_metalness", set % 3 == 0 ? 1.0 : 0.0,
-                                    "specular_roughness", 0.3 + 0.7 * (double)sr_rng_float(&rng), "coat_weight",
-                                    set % 2 ? 1.0 : 0.0, "coat_roughness", 0.4 + 0.6 * (double)sr_rng_float(&rng),
-                                    "coat_ior", 1.1 + (double)sr_rng_float(&rng), "coat_darkening",
-                                    (double)sr_rng_float(&rng), "fuzz_weight", set % 5 ? 0.0 : 1.0, NULL);
+        struct sr_bsdf b =
+            specimen("openpbr", "base_color", 1.0, "base_metalness", set % 3 == 0 ? 1.0 : 0.0, "specular_roughness",
+                     0.3 + 0.7 * (double)sr_rng_float(&rng), "coat_weight", set % 2 ? 1.0 : 0.0, "coat_roughness",
+                     0.4 + 0.6 * (double)sr_rng_float(&rng), "coat_ior", 1.1 + (double)sr_rng_float(&rng),
+                     "coat_darkening", (double)sr_rng_float(&rng), "fuzz_weight", set % 5 ? 0.0 : 1.0, NULL);
         double theta = 85 * (double)sr_rng_float(&rng);
         EXPECT(albedo_by_samples(&b, direction(theta, 0), 1, 4000) < (double)b.model->largest_albedo + 0.01);
     }
@@ -104,10 +109,12 @@ TEST(openpbr_makes_no_light_under_any_layer)
 
 TEST(openpbr_thin_wall_is_a_pane)
 {
-    struct sr_bsdf b = specimen("openpbr", "transmission_weight", 1.0, "thin_walled", 1.0, "specular_roughness", 0.0, "transmission_color", 0.5, NULL);
+    struct sr_bsdf b = specimen("openpbr", "transmission_weight", 1.0, "thin_walled", 1.0, "specular_roughness", 0.0,
+                                "transmission_color", 0.5, NULL);
     for (int i = 0; i < 3; ++i) {
         float c = 1 - 0.3f * (float)i, s = sqrtf(1 - c * c), cos_t = sqrtf(1 - s * s / 2.25f);
-        float rs = (c - 1.5f * cos_t) / (c + 1.5f * cos_t), rp = (1.5f * c - cos_t) / (1.5f * c + cos_t), F = (rs * rs + rp * rp) / 2;
+        float rs = (c - 1.5f * cos_t) / (c + 1.5f * cos_t), rp = (1.5f * c - cos_t) / (1.5f * c + cos_t),
+              F = (rs * rs + rp * rp) / 2;
         for (int side = -1; side <= 1; side += 2) {
             sr_vec3 wo = {s, 0, (float)side * c};
             double through = 0, back = 0;
@@ -136,8 +143,10 @@ TEST(openpbr_film_of_a_quarter_wave_takes_the_mirror_away)
     sr_vec3 w = {0, 0, 1};
     double n = sqrt(1.5), quarter = 0.550 / (4 * n);
     struct sr_bsdf bare = specimen("openpbr", "base_color", 0.0, "specular_roughness", 0.5, NULL);
-    struct sr_bsdf none = specimen("openpbr", "base_color", 0.0, "specular_roughness", 0.5, "thin_film_weight", 1.0, "thin_film_ior", n, "thin_film_thickness", quarter, NULL);
-    struct sr_bsdf half = specimen("openpbr", "base_color", 0.0, "specular_roughness", 0.5, "thin_film_weight", 1.0, "thin_film_ior", n, "thin_film_thickness", 2 * quarter, NULL);
+    struct sr_bsdf none = specimen("openpbr", "base_color", 0.0, "specular_roughness", 0.5, "thin_film_weight", 1.0,
+                                   "thin_film_ior", n, "thin_film_thickness", quarter, NULL);
+    struct sr_bsdf half = specimen("openpbr", "base_color", 0.0, "specular_roughness", 0.5, "thin_film_weight", 1.0,
+                                   "thin_film_ior", n, "thin_film_thickness", 2 * quarter, NULL);
     double mirror = sr_bsdf_f(&bare, w, w, SR_RADIANCE)[0];
     EXPECT(mirror > 0.01);
     EXPECT_NEAR(sr_bsdf_f(&none, w, w, SR_RADIANCE)[0] / mirror, 0, 2e-3);

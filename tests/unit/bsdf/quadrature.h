@@ -73,8 +73,8 @@ __attribute__((unused)) static struct sr_bsdf specimen(const char *name, ...)
     return b;
 }
 
-/* INTEGRAL g(wi) dwi over the hemisphere z > 0 (side 1) or z < 0 (side -1): Gauss-Legendre in theta, in panels of 8, and
- * the trapezoidal rule in phi, n points by 2 n. n is a multiple of 8. */
+/* INTEGRAL g(wi) dwi over the hemisphere z > 0 (side 1) or z < 0 (side -1): Gauss-Legendre in theta, in panels of 8,
+ * and the trapezoidal rule in phi, n points by 2 n. n is a multiple of 8. */
 __attribute__((unused)) static double hemisphere_integral(double (*g)(const void *, sr_vec3), const void *context,
                                                           int side, int n)
 {
@@ -132,10 +132,11 @@ __attribute__((unused)) static int ascending(const void *a, const void *b)
     return d < 0 ? -1 : d > 0;
 }
 
-/* The same by way of the facet m that sends wo to wi: INTEGRAL f |wi.z| |dwi/dm| dm in polar coordinates about the normal,
- * stretched by tan theta_m = alpha t / (1 - t). For surfaces that look the same from all azimuths, as narrow as one likes.
- * Split wherever the facet or wi dips below the surface, or total reflection begins: to about 1e-7, where f is a float.
- * eta: the index below over above for what passes; for side 1 what total reflection goes by, 1 where there is none. */
+/* The same by way of the facet m that sends wo to wi: INTEGRAL f |wi.z| |dwi/dm| dm in polar coordinates about the
+ * normal, stretched by tan theta_m = alpha t / (1 - t). For surfaces that look the same from all azimuths, as narrow as
+ * one likes. Split wherever the facet or wi dips below the surface, or total reflection begins: to about 1e-7, where f
+ * is a float. eta: the index below over above for what passes; for side 1 what total reflection goes by, 1 where there
+ * is none. */
 __attribute__((unused)) static double albedo_by_facets(const struct sr_bsdf *b, sr_vec3 wo, int side, double eta,
                                                        double alpha)
 {
@@ -223,7 +224,8 @@ __attribute__((unused)) static struct sr_tally sampled_weights(const struct sr_b
         EXPECT_MEAN(weights, expected);                                                                                \
     } while (0)
 
-/* The same by the sampler alone: the mean weight of samples, on a lattice of 3 dimensions (Roberts 2018) of n points. */
+/* The same by the sampler alone: the mean weight of samples, on a lattice of 3 dimensions (Roberts 2018) of n points.
+ */
 __attribute__((unused)) static double albedo_by_samples(const struct sr_bsdf *b, sr_vec3 wo, int side, int n)
 {
     double sum = 0;

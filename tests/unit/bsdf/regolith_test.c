@@ -15,7 +15,8 @@ TEST(lunar_reflects_as_its_equations_integrate)
     EXPECT_ALBEDO("lunar reflectance=1 compaction=0.6 forward=0.1", 0.342167, 0.351406, 0.398022, 0.509509);
 }
 
-/* R(0) = 2, phase 1: f = 2 / (3 pi) rho 2 / (2 mu): at full phase a half Moon's limb is as bright as its middle in f cos */
+/* R(0) = 2, phase 1: f = 2 / (3 pi) rho 2 / (2 mu): at full phase a half Moon's limb is as bright as its middle in f
+ * cos */
 TEST(lunar_full_phase_doubles_and_has_no_limb)
 {
     struct sr_bsdf b = bsdf_of("lunar reflectance=0.3 compaction=0.4 forward=0.2");
@@ -32,7 +33,8 @@ TEST(dust_covers_its_base_by_its_optical_thickness)
 {
     EXPECT_ALBEDO("dust albedo=0.5 thickness=0.5 reflectance=0", 0.057217, 0.064207, 0.095871, 0.163473);
     EXPECT_ALBEDO("dust albedo=0.5 thickness=0 reflectance=0.3", 0.3, 0.3, 0.3, 0.3);
-    EXPECT_ALBEDO("dust albedo=0.5 thickness=50 reflectance=0.3", 0.076713, 0.083799, 0.112673, 0.167046); // Lommel-Seeliger
+    EXPECT_ALBEDO("dust albedo=0.5 thickness=50 reflectance=0.3", 0.076713, 0.083799, 0.112673,
+                  0.167046); // Lommel-Seeliger
     struct sr_bsdf b = bsdf_of("dust albedo=0 thickness=0.2 reflectance=0.5");
     EXPECT_RELATIVE(bsdf_value(&b, direction(60, 0), direction(0, 0)), 0.5 / QUADRATURE_PI * exp(-0.2 * 3), 1e-5);
 }
@@ -67,13 +69,15 @@ TEST(hapke_puts_surges_and_phase_together)
     EXPECT_RELATIVE(bsdf_value(&b, direction(to, 0), direction(ti, 0)), f, 1e-5);
 }
 
-/* Hapke 1984 in its own words, both branches; at opposition nothing that is lit is hidden: S mu_0e / mu_0 = chi-symmetric */
+/* Hapke 1984 in its own words, both branches; at opposition nothing that is lit is hidden: S mu_0e / mu_0 =
+ * chi-symmetric */
 TEST(hapke_relief_is_the_published_shadowing)
 {
     struct sr_bsdf rough = bsdf_of("hapke albedo=0.3 b=0 c=0 surge=0 version=1981 theta_bar=25");
     const double pi = QUADRATURE_PI, T = tan(25 * pi / 180), X = 1 / sqrt(1 + pi * T * T), w = 0.3, gamma = sqrt(1 - w);
     for (int k = 0; k < 300; ++k) {
-        double i = (2 + 86.0 * (k % 10) / 9) * pi / 180, e = (5 + 84.0 * (k / 10 % 6) / 5) * pi / 180, psi = pi * (k / 60) / 4.01;
+        double i = (2 + 86.0 * (k % 10) / 9) * pi / 180, e = (5 + 84.0 * (k / 10 % 6) / 5) * pi / 180,
+               psi = pi * (k / 60) / 4.01;
         double cot = 1 / T, E1i = exp(-2 * cot / tan(i) / pi), E1e = exp(-2 * cot / tan(e) / pi);
         double E2i = exp(-cot * cot / tan(i) / tan(i) / pi), E2e = exp(-cot * cot / tan(e) / tan(e) / pi);
         double eta_i = X * (cos(i) + sin(i) * T * E2i / (2 - E1i)), eta_e = X * (cos(e) + sin(e) * T * E2e / (2 - E1e));
@@ -91,13 +95,14 @@ TEST(hapke_relief_is_the_published_shadowing)
         }
         double HH = (1 + 2 * mu0e) / (1 + 2 * mu0e * gamma) * (1 + 2 * mue) / (1 + 2 * mue * gamma);
         double f = w / (4 * pi) * mu0e / (mu0e + mue) * HH * S / cos(i);
-        EXPECT_NEAR(bsdf_value(&rough, direction(e * 180 / pi, 15), direction(i * 180 / pi, 15 + psi * 180 / pi)), f, 3e-5 * f);
+        EXPECT_NEAR(bsdf_value(&rough, direction(e * 180 / pi, 15), direction(i * 180 / pi, 15 + psi * 180 / pi)), f,
+                    3e-5 * f);
     }
 }
 
 TEST(regolith_does_not_care_which_way_light_goes)
 {
-    const char *models[] = {"lommel_seeliger", "lunar", "dust g=0.5", REGOLITH, REGOLITH " theta_bar=30",
+    const char *models[] = {"lommel_seeliger",     "lunar", "dust g=0.5", REGOLITH, REGOLITH " theta_bar=30",
                             REGOLITH " coherent=1"};
     for (size_t i = 0; i < sizeof models / sizeof models[0]; ++i) {
         struct sr_bsdf b = bsdf_of(models[i]);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Ground glass of index 1.5 against independently computed shares of reflected and transmitted light, for each way of masking
- * what passes, from outside and from inside, at 0, 30, 60 and 80 degrees. */
+/* Ground glass of index 1.5 against independently computed shares of reflected and transmitted light, for each way of
+ * masking what passes, from outside and from inside, at 0, 30, 60 and 80 degrees. */
 #include "quadrature.h"
 
 static const double angles[4] = {0, 30, 60, 80};
@@ -68,7 +68,8 @@ static const struct {
      {.707707, .563789, .210526, .031333}},
 };
 
-/* By facets, as over directions f begins with steps and kinks: where m lies in the surface, and where total reflection begins. */
+/* By facets, as over directions f begins with steps and kinks: where m lies in the surface, and where total reflection
+ * begins. */
 TEST(ground_glass_shares_light_out_as_quadrature_says)
 {
     for (int i = 0; i < 6; ++i)
@@ -118,7 +119,8 @@ TEST(ground_glass_as_walter_made_it_loses_what_is_known)
 }
 
 /* Beckmann's reflection tends to the metal's with the same F; what it loses and passes adds up to less than 1. The
- * product of gammas is tested against its closed form at whole numbers by G' at Lambda = 0: B(1, 1 + b) = 1 / (1 + b). */
+ * product of gammas is tested against its closed form at whole numbers by G' at Lambda = 0: B(1, 1 + b) = 1 / (1 + b).
+ */
 TEST(beckmann_glass_keeps_its_books)
 {
     struct sr_bsdf b = specimen("beckmann_dielectric", "alpha_x", 0.3, "alpha_y", 0.3, NULL);

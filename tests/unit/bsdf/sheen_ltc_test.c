@@ -2,8 +2,8 @@
 /* Sheen against what it was fitted to, simulated anew, and against the authors' own table. */
 #include "quadrature.h"
 
-/* Where the table of the paper's code has nodes (tizian/ltc-sheen, Apache 2.0): the share of light, made from the same layer
- * by other means. alpha = i / 31, cos theta_o = j / 31. */
+/* Where the table of the paper's code has nodes (tizian/ltc-sheen, Apache 2.0): the share of light, made from the same
+ * layer by other means. alpha = i / 31, cos theta_o = j / 31. */
 TEST(sheen_returns_what_the_authors_found)
 {
     static const struct {
@@ -20,7 +20,8 @@ TEST(sheen_returns_what_the_authors_found)
     }
 }
 
-/* ---- the layer: a walk among mirroring flakes, by flakes that are accepted or refused in proportion to what is seen ---- */
+/* ---- the layer: a walk among mirroring flakes, by flakes that are accepted or refused in proportion to what is seen
+ * ---- */
 
 static double number(struct sr_rng *rng)
 {

@@ -5,7 +5,8 @@
 TEST(sheen_has_its_printed_albedos)
 {
     static const double theta[4] = {0, 30, 60, 80};
-    static const double half[4] = {1.0 / 12, .124507, .267132, .476357}, fifth[4] = {.019642, .051406, .212796, .538518};
+    static const double half[4] = {1.0 / 12, .124507, .267132, .476357},
+                        fifth[4] = {.019642, .051406, .212796, .538518};
     struct sr_bsdf a = specimen("sheen", "alpha", 0.5, NULL), b = specimen("sheen", "alpha", 0.2, NULL);
     for (int i = 0; i < 4; ++i) {
         EXPECT_NEAR(albedo_toward(&a, direction(theta[i], 0), 1, 320), half[i], 1e-6);

@@ -18,10 +18,10 @@ static bool row(FILE *in, double *nm, double *reflectance, double *uncertainty)
 }
 
 /* E is independent of direction by construction (tested below); 8 deg here. The stated uncertainty is that of the first
- * panel, read with it; the others' tables state none and get the same. Four of five tables jump where the instrument changes
- * its detector (860 ... 880 nm), three have readings above 1 at 919 nm, which no panel reflects: those rows are left out.
- * Beyond 2000 nm single rows are noise of up to 0.015: of the four, eight rows of 2250 may miss, by less than 0.75 of the
- * uncertainty. */
+ * panel, read with it; the others' tables state none and get the same. Four of five tables jump where the instrument
+ * changes its detector (860 ... 880 nm), three have readings above 1 at 919 nm, which no panel reflects: those rows are
+ * left out. Beyond 2000 nm single rows are noise of up to 0.015: of the four, eight rows of 2250 may miss, by less than
+ * 0.75 of the uncertainty. */
 TEST(spectralon_reflects_as_calibrated)
 {
     const char *files[] = {"spectra/spectralon_grit/Spectralon_Num4.txt",
@@ -46,7 +46,8 @@ TEST(spectralon_reflects_as_calibrated)
             double miss = fabs((double)E[0] - reflectance) / uncertainty;
             misses += miss > 1;
             if (!(miss <= (i == 0 ? 1 : 1.75)))
-                test_fail(__FILE__, __LINE__, "%s, %g nm: %g, not %g +- %g", files[i], nm, (double)E[0], reflectance, uncertainty);
+                test_fail(__FILE__, __LINE__, "%s, %g nm: %g, not %g +- %g", files[i], nm, (double)E[0], reflectance,
+                          uncertainty);
             ++count;
         }
         fclose(in);
@@ -72,57 +73,32 @@ TEST(spectralon_is_positive_everywhere)
     for (int l = 0; l < 4; ++l) {
         struct sr_bsdf b = panel(0, 250 + 750 * (float)l);
         for (int k = 0; k < 20 * 20 * 19; ++k) {
-            sr_vec3 wo = direction(89.99 * (k % 20) / 19, 0), wi = direction(89.99 * (k / 20 % 20) / 19, 10.0 * (k / 400));
+            sr_vec3 wo = direction(89.99 * (k % 20) / 19, 0),
+                    wi = direction(89.99 * (k / 20 % 20) / 19, 10.0 * (k / 400));
             double v = QUADRATURE_PI * bsdf_value(&b, wo, wi);
             EXPECT(v > 0.7 && v < 3.5);
         }
     }
 }
 
-/* Values of the published fit divided by its integral over the hemisphere (computed apart, in double): view and light in deg,
- * azimuth from the direction back to the light, nm. */
+/* Values of the published fit divided by its integral over the hemisphere (computed apart, in double): view and light
+ * in deg, azimuth from the direction back to the light, nm. */
 TEST(spectralon_has_the_measured_directions)
 {
     static const double rows[][5] = {
-        {0, 10, 0, 400, 1.0674},
-        {0, 45, 0, 400, 1.0121},
-        {45, 0, 0, 400, 1.0091},
-        {30, 30, 180, 400, 1.0483},
-        {20, 60, 90, 400, 0.9746},
-        {60, 60, 180, 400, 1.2288},
-        {60, 60, 30, 400, 0.9229},
-        {70, 70, 180, 400, 1.7873},
-        {70, 20, 120, 400, 0.9567},
-        {50, 65, 150, 400, 1.1102},
-        {0, 10, 0, 800, 1.0673},
-        {0, 45, 0, 800, 1.0108},
-        {45, 0, 0, 800, 1.0091},
-        {30, 30, 180, 800, 1.0485},
-        {20, 60, 90, 800, 0.9728},
-        {60, 60, 180, 800, 1.2349},
-        {60, 60, 30, 800, 0.9212},
-        {70, 70, 180, 800, 1.8063},
-        {70, 20, 120, 800, 0.9574},
-        {50, 65, 150, 800, 1.1129},
-        {0, 10, 0, 1600, 1.0669},
-        {0, 45, 0, 1600, 1.0081},
-        {45, 0, 0, 1600, 1.0091},
-        {30, 30, 180, 1600, 1.0489},
-        {20, 60, 90, 1600, 0.9692},
-        {60, 60, 180, 1600, 1.2474},
-        {60, 60, 30, 1600, 0.9177},
-        {70, 70, 180, 1600, 1.8448},
-        {70, 20, 120, 1600, 0.9587},
-        {50, 65, 150, 1600, 1.1184},
-        {0, 10, 0, 2400, 1.0665},
-        {0, 45, 0, 2400, 1.0053},
-        {45, 0, 0, 2400, 1.0091},
-        {30, 30, 180, 2400, 1.0493},
-        {20, 60, 90, 2400, 0.9655},
-        {60, 60, 180, 2400, 1.2602},
-        {60, 60, 30, 2400, 0.9142},
-        {70, 70, 180, 2400, 1.8840},
-        {70, 20, 120, 2400, 0.9601},
+        {0, 10, 0, 400, 1.0674},     {0, 45, 0, 400, 1.0121},     {45, 0, 0, 400, 1.0091},
+        {30, 30, 180, 400, 1.0483},  {20, 60, 90, 400, 0.9746},   {60, 60, 180, 400, 1.2288},
+        {60, 60, 30, 400, 0.9229},   {70, 70, 180, 400, 1.7873},  {70, 20, 120, 400, 0.9567},
+        {50, 65, 150, 400, 1.1102},  {0, 10, 0, 800, 1.0673},     {0, 45, 0, 800, 1.0108},
+        {45, 0, 0, 800, 1.0091},     {30, 30, 180, 800, 1.0485},  {20, 60, 90, 800, 0.9728},
+        {60, 60, 180, 800, 1.2349},  {60, 60, 30, 800, 0.9212},   {70, 70, 180, 800, 1.8063},
+        {70, 20, 120, 800, 0.9574},  {50, 65, 150, 800, 1.1129},  {0, 10, 0, 1600, 1.0669},
+        {0, 45, 0, 1600, 1.0081},    {45, 0, 0, 1600, 1.0091},    {30, 30, 180, 1600, 1.0489},
+        {20, 60, 90, 1600, 0.9692},  {60, 60, 180, 1600, 1.2474}, {60, 60, 30, 1600, 0.9177},
+        {70, 70, 180, 1600, 1.8448}, {70, 20, 120, 1600, 0.9587}, {50, 65, 150, 1600, 1.1184},
+        {0, 10, 0, 2400, 1.0665},    {0, 45, 0, 2400, 1.0053},    {45, 0, 0, 2400, 1.0091},
+        {30, 30, 180, 2400, 1.0493}, {20, 60, 90, 2400, 0.9655},  {60, 60, 180, 2400, 1.2602},
+        {60, 60, 30, 2400, 0.9142},  {70, 70, 180, 2400, 1.8840}, {70, 20, 120, 2400, 0.9601},
         {50, 65, 150, 2400, 1.1240},
     };
     double sum = 0;

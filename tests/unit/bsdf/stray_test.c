@@ -2,8 +2,8 @@
 /* Stray light of optics: the ABg and Harvey laws against closed forms and independently computed albedos. */
 #include "quadrature.h"
 
-/* In the plane of direction cosines about the mirror's point, where a narrow law is smooth: rings r = l sinh(x), cut by the
- * unit disk; the ring's part inside is known in closed form, so that one dimension is left. */
+/* In the plane of direction cosines about the mirror's point, where a narrow law is smooth: rings r = l sinh(x), cut by
+ * the unit disk; the ring's part inside is known in closed form, so that one dimension is left. */
 static double scattered(const struct sr_bsdf *b, double theta_deg, double width)
 {
     double t = theta_deg * QUADRATURE_PI / 180, s = sin(t), x[8], w[8], sum = 0;

@@ -32,7 +32,8 @@ static struct sr_film *random_film(void)
 static double variance_of(const struct sr_film *film, int64_t x, int64_t y, int c)
 {
     const struct sr_film_pixel *p = &film->pixels[y * WIDTH + x];
-    return p->blocks < 2 ? NAN : fmax(0, p->square[c] - p->sum[c] * p->sum[c] / p->n) / ((double)(p->blocks - 1) * p->n);
+    return p->blocks < 2 ? NAN
+                         : fmax(0, p->square[c] - p->sum[c] * p->sum[c] / p->n) / ((double)(p->blocks - 1) * p->n);
 }
 
 static double error_of(const struct sr_film *film, int64_t x, int64_t y, int c, int reach)

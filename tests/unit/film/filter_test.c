@@ -66,7 +66,8 @@ static void check(const struct sr_filter_model *model, const struct five *self)
         total += (double)weight;
     }
     mean = total / N;
-    EXPECT_NEAR(mean, 1, 3e-4); // the error of a net of N points where sinc changes its sign: its exact mean is 1 within 4e-6
+    EXPECT_NEAR(mean, 1,
+                3e-4); // the error of a net of N points where sinc changes its sign: its exact mean is 1 within 4e-6
     for (int j = 0; j < CELLS; ++j)
         for (int i = 0; i < CELLS; ++i)
             EXPECT_NEAR(drawn[j][i] / N, expected[j][i] / all, 3e-4);

@@ -81,7 +81,8 @@ TEST(filters_share_splats_out)
         struct sr_film *film = film_of(SIDE, SIDE, 2);
         for (int j = 0; j < SIDE * STEPS; ++j)
             for (int i = 0; i < SIDE * STEPS; ++i)
-                sr_film_splat(film, &f, 0, (sr_vec2){((float)i + .5f) / STEPS, ((float)j + .5f) / STEPS}, (float[3]){SIDE * SIDE, 0, 0});
+                sr_film_splat(film, &f, 0, (sr_vec2){((float)i + .5f) / STEPS, ((float)j + .5f) / STEPS},
+                              (float[3]){SIDE * SIDE, 0, 0});
         sr_film_splat_paths(film, 0, (uint64_t)SIDE * SIDE * STEPS * STEPS);
         double mean[3];
         sr_film_pixel_mean(film, SIDE / 2, SIDE / 2, mean);
@@ -116,7 +117,8 @@ TEST(error_bars_of_splats_cover)
     for (int k = 0; k < FILMS; ++k) {
         struct sr_film *film = film_of(4, 4, GROUPS);
         for (int i = 0; i < PATHS; ++i)
-            sr_film_splat(film, &f, (uint32_t)i % GROUPS, (sr_vec2){8 * sr_rng_float(&rng) - 2, 8 * sr_rng_float(&rng) - 2}, (float[3]){64, 0, 0});
+            sr_film_splat(film, &f, (uint32_t)i % GROUPS,
+                          (sr_vec2){8 * sr_rng_float(&rng) - 2, 8 * sr_rng_float(&rng) - 2}, (float[3]){64, 0, 0});
         for (uint32_t g = 0; g < GROUPS; ++g)
             sr_film_splat_paths(film, g, PATHS / GROUPS);
         double mean = 0;

@@ -18,7 +18,8 @@ static void encode_by(int threads, void **bytes, size_t *size)
     EXPECT(sched_setaffinity(0, sizeof some, &some) == 0);
     struct sr_image *image;
     struct sr_error error = {0};
-    EXPECT(sr_image_create(70, 613, 7, (const char *const[]){"R", "G", "B", "depth", "u", "v", "id"}, SR_IMAGE_FLOATS, &image, &error) == SR_OK);
+    EXPECT(sr_image_create(70, 613, 7, (const char *const[]){"R", "G", "B", "depth", "u", "v", "id"}, SR_IMAGE_FLOATS,
+                           &image, &error) == SR_OK);
     for (uint32_t i = 0; i < 70 * 613 * 7; i++)
         image->floats[i] = (float)(i * 2654435761u >> 20);
     EXPECT(sr_image_encode(".exr", image, NULL, bytes, size, &error) == SR_OK);

@@ -4,19 +4,20 @@
 #include "test.h"
 
 static const uint8_t file[] = {
-    'q', 'o', 'i', 'f', 0, 0, 0, 5, 0, 0, 0, 2, 4, 0, // 5 x 2, RGBA
-    0xfe, 16, 32, 48,                                 // RGB
-    0x72,                                             // differences 1, -2, 0
-    0xaa, 0x5c,                                       // green 10, red -3 and blue 4 more than green
-    0xc2,                                             // three more of it
-    0xff, 1, 2, 3, 4,                                 // RGBA
-    0x15,                                             // the colour at place (3 16 + 5 32 + 7 48 + 11 255) mod 64 = 21
-    0xfe, 0, 0, 255,                                  // RGB, alpha stays
-    0x5b,                                             // differences -1, 0, 1, which wrap around
-    0, 0, 0, 0, 0, 0, 0, 1,
+    'q',  'o',  'i', 'f', 0, 0, 0, 5, 0, 0, 0, 2, 4, 0, // 5 x 2, RGBA
+    0xfe, 16,   32,  48,                                // RGB
+    0x72,                                               // differences 1, -2, 0
+    0xaa, 0x5c,                                         // green 10, red -3 and blue 4 more than green
+    0xc2,                                               // three more of it
+    0xff, 1,    2,   3,   4,                            // RGBA
+    0x15,                                               // the colour at place (3 16 + 5 32 + 7 48 + 11 255) mod 64 = 21
+    0xfe, 0,    0,   255,                               // RGB, alpha stays
+    0x5b,                                               // differences -1, 0, 1, which wrap around
+    0,    0,    0,   0,   0, 0, 0, 1,
 };
-static const uint8_t pixels[10][4] = {{16, 32, 48, 255}, {17, 30, 48, 255}, {24, 40, 62, 255}, {24, 40, 62, 255}, {24, 40, 62, 255},
-                                      {24, 40, 62, 255}, {1, 2, 3, 4},      {16, 32, 48, 255}, {0, 0, 255, 255},  {255, 0, 0, 255}};
+static const uint8_t pixels[10][4] = {{16, 32, 48, 255}, {17, 30, 48, 255}, {24, 40, 62, 255}, {24, 40, 62, 255},
+                                      {24, 40, 62, 255}, {24, 40, 62, 255}, {1, 2, 3, 4},      {16, 32, 48, 255},
+                                      {0, 0, 255, 255},  {255, 0, 0, 255}};
 
 TEST(qoi_chunks_of_all_kinds_are_read)
 {
@@ -54,6 +55,7 @@ TEST(qoi_files_that_are_cut_or_lie_are_refused)
         struct sr_error error = {0};
         memcpy(broken, file, sizeof file);
         broken[at[k]] = wrong[k];
-        EXPECT(sr_image_decode("a.qoi", broken, sizeof broken, SR_IMAGE_SRGB, &image, &error) != SR_OK && !image && error.text[0]);
+        EXPECT(sr_image_decode("a.qoi", broken, sizeof broken, SR_IMAGE_SRGB, &image, &error) != SR_OK && !image &&
+               error.text[0]);
     }
 }

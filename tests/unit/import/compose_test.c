@@ -41,13 +41,15 @@ TEST(compose_describes_what_a_file_would)
     EXPECT(d.has_world);
     EXPECT_EQUAL_INT(d.shapes.count, 1);
     const struct sr_pbrt_shape *s = SR_PBRT_AT(d.shapes, struct sr_pbrt_shape, 0);
-    EXPECT(strcmp(s->entity.model, "trianglemesh") == 0 && strcmp(s->material.name, "red") == 0 && strcmp(s->name, "sheet") == 0);
+    EXPECT(strcmp(s->entity.model, "trianglemesh") == 0 && strcmp(s->material.name, "red") == 0 &&
+           strcmp(s->name, "sheet") == 0);
     const struct sr_pbrt_param *P = sr_pbrt_find(&s->entity.params, "P");
     EXPECT(P && P->floats == positions && P->count == 9 && P->type == SR_PBRT_POINT3);
     EXPECT_NEAR(SR_PBRT_AT(d.transforms, struct sr_pbrt_transform, s->entity.transform)->start.m[2][3], 2, 0);
     EXPECT_EQUAL_INT(sr_pbrt_names_find(&d.material_names, "red"), 1);
     EXPECT(strcmp(SR_PBRT_AT(d.named_materials, struct sr_pbrt_entity, 0)->model, "diffuse") == 0);
-    EXPECT_NEAR(SR_PBRT_AT(d.transforms, struct sr_pbrt_transform, d.camera.transform)->start.m[2][3], 5, 0); // world to camera
+    EXPECT_NEAR(SR_PBRT_AT(d.transforms, struct sr_pbrt_transform, d.camera.transform)->start.m[2][3], 5,
+                0); // world to camera
     float fov = 0;
     int32_t width = 0;
     EXPECT(sr_pbrt_get_float(&d, &d.camera.params, "fov", &fov, &error) == SR_OK && fov == 30);

@@ -9,9 +9,10 @@ static struct sr_error error;
 
 static sr_status import(const char *text)
 {
-    static const char plane[] = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float u\nproperty float v\n"
-                                "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
-                                "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n4 0 1 2 3\n";
+    static const char plane[] =
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float u\nproperty float v\n"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n4 0 1 2 3\n";
     char path[1024], ply[1024];
     struct sr_import_options options = {.threads = 1};
     snprintf(path, sizeof path, "%s/displace.pbrt", test_folder());
@@ -22,7 +23,8 @@ static sr_status import(const char *text)
     return sr_import_pbrt(path, &options, &result, NULL, &error);
 }
 
-#define HILL "Texture \"hill\" \"float\" \"bilerp\" \"float v00\" 0.5 \"float v10\" 1 \"float v01\" -0.25 \"float v11\" 2\n"
+#define HILL                                                                                                           \
+    "Texture \"hill\" \"float\" \"bilerp\" \"float v00\" 0.5 \"float v10\" 1 \"float v01\" -0.25 \"float v11\" 2\n"
 #define DISPLACED "Shape \"plymesh\" \"string filename\" \"plane.ply\" \"texture displacement\" \"hill\" "
 
 TEST(a_plane_is_displaced_by_a_bilinear_texture)
@@ -34,8 +36,10 @@ TEST(a_plane_is_displaced_by_a_bilinear_texture)
         struct sr_ray ray = {.o = {2 * u, 2 * v, 10}, .d = {0, 0, -1}, .t_max = INFINITY};
         struct sr_hit hit;
         EXPECT(sr_raycast(result.scene, &ray, &hit));
-        // v01 is at u = 0, v = 1; what is linear between vertices strays by the mixed derivative 1.75 times du dv / 4 at most
-        double d = 0.5 * (1 - (double)u) * (1 - (double)v) + 1 * (double)u * (1 - (double)v) - 0.25 * (1 - (double)u) * (double)v + 2 * (double)u * (double)v;
+        // v01 is at u = 0, v = 1; what is linear between vertices strays by the mixed derivative 1.75 times du dv / 4
+        // at most
+        double d = 0.5 * (1 - (double)u) * (1 - (double)v) + 1 * (double)u * (1 - (double)v) -
+                   0.25 * (1 - (double)u) * (double)v + 2 * (double)u * (double)v;
         EXPECT_NEAR(hit.point.p.z, 2 * d, 2 * 1.75 * 0.05 * 0.05 / 4);
         // the normal of z(x, y) = 2 d(x / 2, y / 2)
         double du = 0.5 + 1.75 * (double)v, dv = -0.75 + 1.75 * (double)u, l = sqrt(1 + du * du + dv * dv);
@@ -58,11 +62,16 @@ static uint64_t triangles_of(const char *text)
 TEST(edge_length_is_measured_in_the_world_and_scaled_by_the_option)
 {
     EXPECT_EQUAL_INT(triangles_of("WorldBegin\n" HILL DISPLACED "\"float edgelength\" 1.5\n"), 2);
-    EXPECT_EQUAL_INT(triangles_of("WorldBegin\n" HILL DISPLACED "\n"), 8); // halved at the diagonal, then at the edges of length 1
+    EXPECT_EQUAL_INT(triangles_of("WorldBegin\n" HILL DISPLACED "\n"),
+                     8); // halved at the diagonal, then at the edges of length 1
     EXPECT_EQUAL_INT(triangles_of("WorldBegin\n" HILL DISPLACED "\"float edgelength\" 0.75\n"), 8);
     EXPECT_EQUAL_INT(triangles_of("WorldBegin\n" HILL "Scale 2 2 2\n" DISPLACED "\"float edgelength\" 1.5\n"), 8);
-    EXPECT_EQUAL_INT(triangles_of("Option \"float displacementedgescale\" 0.5\nWorldBegin\n" HILL DISPLACED "\"float edgelength\" 1.5\n"), 8);
-    EXPECT_EQUAL_INT(triangles_of("WorldBegin\nShape \"plymesh\" \"string filename\" \"plane.ply\" \"float edgelength\" 0.1\n"), 2); // a flat parallelogram
+    EXPECT_EQUAL_INT(triangles_of("Option \"float displacementedgescale\" 0.5\nWorldBegin\n" HILL DISPLACED
+                                  "\"float edgelength\" 1.5\n"),
+                     8);
+    EXPECT_EQUAL_INT(
+        triangles_of("WorldBegin\nShape \"plymesh\" \"string filename\" \"plane.ply\" \"float edgelength\" 0.1\n"),
+        2); // a flat parallelogram
 }
 
 /* An octahedron stretched, with all uv alike, after displacement by a constant. */
@@ -100,7 +109,8 @@ TEST(a_closed_mesh_stays_closed)
         e.x *= 2;
         longest = fmax(longest, (double)sr_length(e));
         if (h % 3 == 0)
-            area += 0.5 * (double)sr_length(sr_cross(sr_sub(ply.P[c[h + 1]], ply.P[a]), sr_sub(ply.P[c[h + 2]], ply.P[a])));
+            area +=
+                0.5 * (double)sr_length(sr_cross(sr_sub(ply.P[c[h + 1]], ply.P[a]), sr_sub(ply.P[c[h + 2]], ply.P[a])));
     }
     EXPECT_EQUAL_INT(single, 0);
     EXPECT_EQUAL_INT(ply.vertex_count - n / 2 + n / 3, 2); // Euler
@@ -143,5 +153,6 @@ TEST(what_is_wrong_with_displacement_is_told)
     struct sr_ply_mesh bare = {0};
     struct sr_transform here = sr_transform_identity();
     struct sr_error e = {0};
-    EXPECT(sr_pbrt_displace(&bare, &here, 1, (struct sr_texture){0}, &e) == SR_ERROR_INPUT && strstr(e.text, "texture coordinates"));
+    EXPECT(sr_pbrt_displace(&bare, &here, 1, (struct sr_texture){0}, &e) == SR_ERROR_INPUT &&
+           strstr(e.text, "texture coordinates"));
 }

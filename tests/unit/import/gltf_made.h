@@ -51,9 +51,10 @@ static inline void note(void *user, enum sr_severity severity, const char *text)
 static inline const char *with_buffer(const char *rest)
 {
     static char text[20000];
-    snprintf(text, sizeof text,
-             "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":%zu,\"uri\":\"data:application/octet-stream;base64,%s\"}],%s}",
-             buffer_size, base64(), rest);
+    snprintf(
+        text, sizeof text,
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":%zu,\"uri\":\"data:application/octet-stream;base64,%s\"}],%s}",
+        buffer_size, base64(), rest);
     return text;
 }
 
@@ -109,7 +110,8 @@ static inline sr_vec3 placed(size_t i, uint32_t vertex) // in the world
     const struct sr_pbrt_param *p = sr_pbrt_find(&shape(i)->entity.params, "P");
     const float *P = p->floats + 3 * (size_t)vertex;
     EXPECT(3 * vertex + 2 < p->count);
-    struct sr_transform to_world = sr_matrix_to_transform(&SR_PBRT_AT(d.transforms, struct sr_pbrt_transform, shape(i)->entity.transform)->start);
+    struct sr_transform to_world =
+        sr_matrix_to_transform(&SR_PBRT_AT(d.transforms, struct sr_pbrt_transform, shape(i)->entity.transform)->start);
     return sr_transform_point(&to_world, (sr_vec3){P[0], P[1], P[2]});
 }
 

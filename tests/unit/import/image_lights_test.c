@@ -60,11 +60,13 @@ TEST(lights_take_latitude_longitude_maps_and_say_so)
         EXPECT_EQUAL_TEXT(import(text, &count), "");
         EXPECT(!strstr(notes, "latitude"));
         write_image("map.exr", 8, 5);
-        EXPECT(strstr(import(text, NULL), ":2:1: LightSource") && strstr(import(text, NULL), "must be square") && strstr(import(text, NULL), "8 x 5"));
+        EXPECT(strstr(import(text, NULL), ":2:1: LightSource") && strstr(import(text, NULL), "must be square") &&
+               strstr(import(text, NULL), "8 x 5"));
     }
     uint32_t count = 0; // a projector takes any
     write_image("map.exr", 8, 5);
-    EXPECT_EQUAL_TEXT(import("LightSource \"projection\" \"string filename\" \"map.exr\" \"float fov\" 40", &count), "");
+    EXPECT_EQUAL_TEXT(import("LightSource \"projection\" \"string filename\" \"map.exr\" \"float fov\" 40", &count),
+                      "");
     EXPECT_EQUAL_INT(count, 1);
 }
 
@@ -94,16 +96,21 @@ TEST(lights_with_images_and_noise_refuse_nonsense)
 {
     const struct {
         const char *text, *error;
-    } cases[] = {{"LightSource \"goniometric\"", "needs the parameter \"filename\""},
-                 {"LightSource \"projection\" \"float fov\" 30", "needs the parameter \"filename\""},
-                 {"LightSource \"projection\" \"string filename\" \"map.exr\" \"float fov\" 200", "fov"},
-                 {"LightSource \"projection\" \"string filename\" \"map.exr\" \"float fov\" 0", "above 0 and below 180"},
-                 {"LightSource \"goniometric\" \"string filename\" \"none.exr\"", "none.exr"},
-                 {"Texture \"t\" \"float\" \"fbm\" \"integer octaves\" 65 Shape \"sphere\" \"texture alpha\" \"t\"", "octaves"},
-                 {"Texture \"t\" \"float\" \"wrinkled\" \"float roughness\" -1 Shape \"sphere\" \"texture alpha\" \"t\"", "roughness"},
-                 {"Texture \"t\" \"float\" \"directionmix\" \"vector3 dir\" [0 0 0] Shape \"sphere\" \"texture alpha\" \"t\"", "dir"},
-                 {"Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"map.exr\" \"string filter\" \"sharp\" Shape \"sphere\" \"texture alpha\" \"t\"", "filter"},
-                 {"Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"map.exr\" \"string encoding\" \"gamma -2\" Shape \"sphere\" \"texture alpha\" \"t\"", "gamma"}};
+    } cases[] = {
+        {"LightSource \"goniometric\"", "needs the parameter \"filename\""},
+        {"LightSource \"projection\" \"float fov\" 30", "needs the parameter \"filename\""},
+        {"LightSource \"projection\" \"string filename\" \"map.exr\" \"float fov\" 200", "fov"},
+        {"LightSource \"projection\" \"string filename\" \"map.exr\" \"float fov\" 0", "above 0 and below 180"},
+        {"LightSource \"goniometric\" \"string filename\" \"none.exr\"", "none.exr"},
+        {"Texture \"t\" \"float\" \"fbm\" \"integer octaves\" 65 Shape \"sphere\" \"texture alpha\" \"t\"", "octaves"},
+        {"Texture \"t\" \"float\" \"wrinkled\" \"float roughness\" -1 Shape \"sphere\" \"texture alpha\" \"t\"",
+         "roughness"},
+        {"Texture \"t\" \"float\" \"directionmix\" \"vector3 dir\" [0 0 0] Shape \"sphere\" \"texture alpha\" \"t\"",
+         "dir"},
+        {"Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"map.exr\" \"string filter\" \"sharp\" Shape \"sphere\" \"texture alpha\" \"t\"",
+         "filter"},
+        {"Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"map.exr\" \"string encoding\" \"gamma -2\" Shape \"sphere\" \"texture alpha\" \"t\"",
+         "gamma"}};
     write_image("map.exr", 8, 8);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
         const char *error = import(cases[i].text, NULL);

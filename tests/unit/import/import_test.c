@@ -70,31 +70,39 @@ TEST(what_is_not_supported_says_so_and_what_is)
         "2:1: Material \"velvet\" is not supported yet; supported: diffuse, diffusetransmission, conductor, "
         "dielectric, thindielectric, coateddiffuse, coatedconductor, mix, interface, hair, subsurface, and the models of "
         "'steradian brdf list'");
-    expect_error("WorldBegin\nLightSource \"lantern\"",
-                 "2:1: LightSource \"lantern\" is not supported yet; supported: point, spot, ies, goniometric, projection, distant, infinite");
-    expect_error("Camera \"pinhole\"\nWorldBegin",
-                 "1:1: Camera \"pinhole\" is not supported yet; supported: perspective, orthographic, spherical, fisheye, realistic");
+    expect_error(
+        "WorldBegin\nLightSource \"lantern\"",
+        "2:1: LightSource \"lantern\" is not supported yet; supported: point, spot, ies, goniometric, projection, distant, infinite");
+    expect_error(
+        "Camera \"pinhole\"\nWorldBegin",
+        "1:1: Camera \"pinhole\" is not supported yet; supported: perspective, orthographic, spherical, fisheye, realistic");
     expect_error("Camera \"realistic\"\nWorldBegin", "1:1: Camera \"realistic\": expected \"string lensfile\"");
-    expect_error("Sampler \"sobol\" \"string randomization\" \"dice\"\nWorldBegin",
-                 "1:17: \"string randomization\" of Sampler \"sobol\" is \"dice\": expected none, permutedigits, fastowen or owen");
-    expect_error("Film \"plate\"\nWorldBegin", "1:1: Film \"plate\" is not supported yet; supported: rgb, gbuffer, spectral");
+    expect_error(
+        "Sampler \"sobol\" \"string randomization\" \"dice\"\nWorldBegin",
+        "1:17: \"string randomization\" of Sampler \"sobol\" is \"dice\": expected none, permutedigits, fastowen or owen");
+    expect_error("Film \"plate\"\nWorldBegin",
+                 "1:1: Film \"plate\" is not supported yet; supported: rgb, gbuffer, spectral");
     expect_error("Film \"spectral\" \"float lambdamin\" 700 \"float lambdamax\" 400\nWorldBegin",
                  "1:1: Film \"spectral\": lambdamin 700 nm must be less than lambdamax 400 nm");
-    expect_error("Film \"spectral\" \"integer nbuckets\" 0\nWorldBegin", "1:17: \"integer nbuckets\" of Film \"spectral\" is 0: expected 1 to 4096");
+    expect_error("Film \"spectral\" \"integer nbuckets\" 0\nWorldBegin",
+                 "1:17: \"integer nbuckets\" of Film \"spectral\" is 0: expected 1 to 4096");
     expect_error("Film \"gbuffer\" \"string coordinatesystem\" \"screen\"\nWorldBegin",
                  "1:16: \"string coordinatesystem\" of Film \"gbuffer\" is \"screen\": expected camera|world");
-    expect_error("WorldBegin\nMediumInterface \"fog\" \"\"\n" BALL,
-                 "2:1: there is no medium named \"fog\"");
-    expect_error("Film \"rgb\"\n\"string sensor\" \"nikon_d580\" WorldBegin",
-                 "2:1: there is no sensor \"nikon_d580\": expected cie1931 or the name of a camera: did you mean \"nikon_d850\"?");
-    expect_error("WorldBegin Texture \"t\" \"spectrum\" \"marzipan\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\" " BALL,
-                 "1:12: Texture \"marzipan\" is not supported yet; supported: constant, scale, mix, bilerp, checkerboard, "
-                 "imagemap, dots, directionmix, marble, texelmap, attribute, product");
-    expect_error("WorldBegin Texture \"t\" \"float\" \"marble\"\nShape \"sphere\" \"texture alpha\" \"t\"",
-                 "1:12: Texture \"marble\" is not supported yet; supported: constant, scale, mix, bilerp, checkerboard, "
-                 "imagemap, dots, directionmix, fbm, wrinkled, windy, texelmap, attribute, threshold");
-    expect_error("WorldBegin Texture \"t\" \"spectrum\" \"ptex\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\" " BALL,
-                 "1:12: Texture \"t\": Ptex files are not read: bake it into an image over the surface's (u, v) and use \"imagemap\"");
+    expect_error("WorldBegin\nMediumInterface \"fog\" \"\"\n" BALL, "2:1: there is no medium named \"fog\"");
+    expect_error(
+        "Film \"rgb\"\n\"string sensor\" \"nikon_d580\" WorldBegin",
+        "2:1: there is no sensor \"nikon_d580\": expected cie1931 or the name of a camera: did you mean \"nikon_d850\"?");
+    expect_error(
+        "WorldBegin Texture \"t\" \"spectrum\" \"marzipan\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\" " BALL,
+        "1:12: Texture \"marzipan\" is not supported yet; supported: constant, scale, mix, bilerp, checkerboard, "
+        "imagemap, dots, directionmix, marble, texelmap, attribute, product");
+    expect_error(
+        "WorldBegin Texture \"t\" \"float\" \"marble\"\nShape \"sphere\" \"texture alpha\" \"t\"",
+        "1:12: Texture \"marble\" is not supported yet; supported: constant, scale, mix, bilerp, checkerboard, "
+        "imagemap, dots, directionmix, fbm, wrinkled, windy, texelmap, attribute, threshold");
+    expect_error(
+        "WorldBegin Texture \"t\" \"spectrum\" \"ptex\"\nMaterial \"diffuse\" \"texture reflectance\" \"t\" " BALL,
+        "1:12: Texture \"t\": Ptex files are not read: bake it into an image over the surface's (u, v) and use \"imagemap\"");
 }
 
 TEST(wrong_parameters_tell_where_and_what_was_expected)
@@ -229,7 +237,8 @@ static double luminance(const struct sr_hit *hit, sr_vec3 w)
         struct sr_wavelengths wl = {.pdf = SR_ONE};
         for (int i = 0; i < SR_LAMBDA_COUNT; ++i)
             wl.lambda[i] = (float)(first + i);
-        sr_spectrum L = hit ? sr_hit_Le(result.scene, hit, w, &wl) : sr_escape_Le(result.scene, &(struct sr_ray){.d = w, .t_max = INFINITY}, &wl);
+        sr_spectrum L = hit ? sr_hit_Le(result.scene, hit, w, &wl)
+                            : sr_escape_Le(result.scene, &(struct sr_ray){.d = w, .t_max = INFINITY}, &wl);
         for (int i = 0; i < SR_LAMBDA_COUNT && first + i <= 830; ++i)
             sum += (double)L[i] * sr_luminous_efficiency(first + i);
     }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* MediumInterface: which medium is on which side of a surface, around the camera, and at any point; and who renders that. */
+/* MediumInterface: which medium is on which side of a surface, around the camera, and at any point; and who renders
+ * that. */
 #include "test.h"
 
 #include "import/import.h"
@@ -52,16 +53,20 @@ static float thickness(float x, float y, float z)
     return one;
 }
 
-#define MEDIUM(name, sigma) "MakeNamedMedium \"" name "\" \"string type\" \"homogeneous\" \"spectrum sigma_a\" [300 " sigma " 900 " sigma "]\n"
+#define MEDIUM(name, sigma)                                                                                            \
+    "MakeNamedMedium \"" name "\" \"string type\" \"homogeneous\" \"spectrum sigma_a\" [300 " sigma " 900 " sigma "]\n"
 #define MEDIA MEDIUM("thin", "1") MEDIUM("thick", "2")
 #define BALL(radius) "Shape \"sphere\" \"float radius\" " radius "\n"
 
 TEST(media_are_where_interfaces_say)
 {
     import(MEDIA "MediumInterface \"\" \"thin\"\nCamera \"perspective\"\nWorldBegin\nMaterial \"interface\"\n"
-                 "AttributeBegin MediumInterface \"thick\" \"thin\" " BALL("2") "AttributeEnd\n"
-                 "AttributeBegin MediumInterface \"\" \"thick\" " BALL("1") "AttributeEnd\n"
-                 "Material \"diffuse\" MediumInterface \"thin\" \"thin\" " BALL("0.25")); // same on both sides: nothing is said
+                 "AttributeBegin MediumInterface \"thick\" \"thin\" " BALL(
+                     "2") "AttributeEnd\n"
+                          "AttributeBegin MediumInterface \"\" \"thick\" " BALL(
+                              "1") "AttributeEnd\n"
+                                   "Material \"diffuse\" MediumInterface \"thin\" \"thin\" " BALL(
+                                       "0.25")); // same on both sides: nothing is said
     EXPECT(sr_scene_has_media(result.scene) && sr_scene_has_interfaces(result.scene));
     EXPECT(sr_scene_sensor_medium(result.scene) != NULL);
     EXPECT(thickness(0.1f, 0, 0.5f) == 0);
@@ -91,8 +96,9 @@ TEST(what_is_around_is_what_the_outermost_surface_says)
 
 TEST(media_of_objects_go_with_their_instances)
 {
-    import(MEDIA "WorldBegin\nObjectBegin \"o\"\nMaterial \"interface\" MediumInterface \"thick\" \"\" " BALL("1") "ObjectEnd\n"
-                 "Translate 5 0 0 Scale 1 1 -1 ObjectInstance \"o\"\n");
+    import(MEDIA "WorldBegin\nObjectBegin \"o\"\nMaterial \"interface\" MediumInterface \"thick\" \"\" " BALL(
+        "1") "ObjectEnd\n"
+             "Translate 5 0 0 Scale 1 1 -1 ObjectInstance \"o\"\n");
     EXPECT(sr_scene_has_media(result.scene) && sr_scene_has_interfaces(result.scene));
     EXPECT(thickness(5, 0.1f, 0.2f) == 2);
     EXPECT(thickness_at((sr_vec3){3, 0.1f, 0.2f}, (sr_vec3){1, 0, 0}) == 0);
@@ -119,12 +125,14 @@ TEST(estimators_without_media_say_so_or_give_way)
 TEST(names_of_media_must_be_known)
 {
     static const char *const texts[] = {
-        MEDIA "WorldBegin\nMediumInterface \"thikc\" \"\" " BALL("1"), MEDIA "MediumInterface \"\" \"thikc\"\nCamera \"perspective\" WorldBegin " BALL("1"),
+        MEDIA "WorldBegin\nMediumInterface \"thikc\" \"\" " BALL("1"),
+        MEDIA "MediumInterface \"\" \"thikc\"\nCamera \"perspective\" WorldBegin " BALL("1"),
         MEDIA "WorldBegin\nMediumInterface \"\" \"thikc\" LightSource \"point\"",
     };
     for (int i = 0; i < 3; ++i) {
         struct sr_error error = {0};
         EXPECT(import_with(texts[i], NULL, &error) == SR_ERROR_INPUT);
-        EXPECT(strstr(error.text, "no medium named \"thikc\": did you mean \"thick\"?") != NULL && strstr(error.text, "media.pbrt:"));
+        EXPECT(strstr(error.text, "no medium named \"thikc\": did you mean \"thick\"?") != NULL &&
+               strstr(error.text, "media.pbrt:"));
     }
 }

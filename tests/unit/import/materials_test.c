@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Each parameter of pbrt's materials: a value changes what is scattered, and a texture of that value is as good as the value. */
+/* Each parameter of pbrt's materials: a value changes what is scattered, and a texture of that value is as good as the
+ * value. */
 #include "import/import.h"
 #include "test.h"
 
@@ -51,11 +52,12 @@ static void put(struct print *p, sr_spectrum s)
 static struct print print_of(const char *material, const char *parameter)
 {
     char text[4096];
-    snprintf(text, sizeof text,
-             "WorldBegin\nTexture \"f\" \"float\" \"constant\" \"float value\" 0.35\nTexture \"s\" \"spectrum\" \"constant\" \"rgb value\" [0.2 0.35 0.7]\n"
-             "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"b\" \"string type\" \"conductor\" \"float roughness\" 0.5\n"
-             "Material %s %s\nShape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]\n",
-             material, parameter);
+    snprintf(
+        text, sizeof text,
+        "WorldBegin\nTexture \"f\" \"float\" \"constant\" \"float value\" 0.35\nTexture \"s\" \"spectrum\" \"constant\" \"rgb value\" [0.2 0.35 0.7]\n"
+        "MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\nMakeNamedMaterial \"b\" \"string type\" \"conductor\" \"float roughness\" 0.5\n"
+        "Material %s %s\nShape \"bilinearmesh\" \"point3 P\" [-1 -1 0  1 -1 0  -1 1 0  1 1 0]\n",
+        material, parameter);
     struct sr_import_result result;
     struct sr_error error = {0};
     if (import(text, &result, &error) != SR_OK)
@@ -83,7 +85,8 @@ static struct print print_of(const char *material, const char *parameter)
     static const float turns[6] = {0.02f, 0.2f, 0.3f, 0.55f, 0.75f, 0.97f};
     for (int i = 0; i < 6; ++i) {
         struct sr_bsdf_sample s;
-        sr_vec3 wi = sr_spherical_direction(sinf(0.3f + 0.4f * (float)i), cosf(0.3f + 0.4f * (float)i), 1.1f * (float)i);
+        sr_vec3 wi =
+            sr_spherical_direction(sinf(0.3f + 0.4f * (float)i), cosf(0.3f + 0.4f * (float)i), 1.1f * (float)i);
         put(&print, sr_bsdf_f(&bsdf, wo, wi, SR_RADIANCE));
         if (sr_bsdf_sample(&bsdf, wo, turns[i], (sr_vec2){0.3f, 0.8f}, SR_RADIANCE, &s)) {
             put(&print, s.f * (sr_abs_cos_theta(s.wi) / s.pdf));
@@ -231,7 +234,10 @@ static void expect_refusal(const char *material, const char *message)
 static void expect_warning(const char *material, const char *message)
 {
     char text[1024];
-    snprintf(text, sizeof text, "WorldBegin\nMakeNamedMaterial \"i\" \"string type\" \"interface\" MakeNamedMaterial \"d\" \"string type\" \"diffuse\"\nMaterial %s\nShape \"sphere\"", material);
+    snprintf(
+        text, sizeof text,
+        "WorldBegin\nMakeNamedMaterial \"i\" \"string type\" \"interface\" MakeNamedMaterial \"d\" \"string type\" \"diffuse\"\nMaterial %s\nShape \"sphere\"",
+        material);
     struct sr_import_result result;
     struct sr_error error = {0};
     if (import(text, &result, &error) != SR_OK)
@@ -265,9 +271,12 @@ TEST(materials_tell_what_is_given_in_vain)
     expect_warning("\"hair\" \"rgb sigma_a\" [1 1 1] \"float eumelanin\" 1", "sigma_a is given");
     expect_warning("\"hair\" \"rgb color\" [.1 .1 .1] \"float eumelanin\" 1", "a colour is given");
     expect_warning("\"subsurface\" \"string name\" \"Apple\" \"float g\" 0.5", "the medium is named");
-    expect_warning("\"subsurface\" \"rgb sigma_a\" [1 1 1] \"rgb sigma_s\" [1 1 1] \"rgb mfp\" [1 1 1]", "sigma_a and sigma_s are given");
+    expect_warning("\"subsurface\" \"rgb sigma_a\" [1 1 1] \"rgb sigma_s\" [1 1 1] \"rgb mfp\" [1 1 1]",
+                   "sigma_a and sigma_s are given");
     expect_warning("\"subsurface\" \"rgb mfp\" [1 1 1]", "mfp is ignored");
     expect_warning("\"mix\" \"string materials\" [\"i\" \"d\"]", "\"i\" is an interface");
-    expect_warning("\"mix\" \"string materials\" [\"d\" \"d\"] \"float displacement\" 1", "unused parameter \"float displacement\"");
-    expect_warning("\"coateddiffuse\" \"float interface.roughness\" 1", "unused parameter \"float interface.roughness\"");
+    expect_warning("\"mix\" \"string materials\" [\"d\" \"d\"] \"float displacement\" 1",
+                   "unused parameter \"float displacement\"");
+    expect_warning("\"coateddiffuse\" \"float interface.roughness\" 1",
+                   "unused parameter \"float interface.roughness\"");
 }

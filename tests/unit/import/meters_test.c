@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Comments that are directives: where they count and where not, what meters take from them, what is told of mistakes. */
+/* Comments that are directives: where they count and where not, what meters take from them, what is told of mistakes.
+ */
 #include "import/import.h"
 #include "import/pbrt/description.h"
 #include "test.h"
@@ -67,7 +68,9 @@ static struct sr_meter_place place_of(uint32_t i)
 
 TEST(meters_stand_where_their_transform_puts_them)
 {
-    import("WorldBegin " SPHERE METER "Translate 10 0 0\n#@ Meter \"irradiance\" \"point3 p\" [1 2 3]\nScale 2 2 2\n#@ Meter \"fluence\" \"point3 p\" [1 2 3]\n");
+    import(
+        "WorldBegin " SPHERE METER
+        "Translate 10 0 0\n#@ Meter \"irradiance\" \"point3 p\" [1 2 3]\nScale 2 2 2\n#@ Meter \"fluence\" \"point3 p\" [1 2 3]\n");
     EXPECT_EQUAL_INT(result.meter_count, 3);
     EXPECT_EQUAL_TEXT(name_of(0), "a");
     EXPECT_EQUAL_TEXT(name_of(1), "meter 2");
@@ -83,8 +86,9 @@ TEST(meters_stand_where_their_transform_puts_them)
 TEST(directives_in_comments_go_over_lines_of_their_own_and_no_others)
 {
     // lines right below go on; anything between ends it; the parameters of the shape around are the shape's
-    import("WorldBegin\nShape \"sphere\"\n#@ Meter \"radiance\"   # a comment in a comment\n   #@ \"string name\" \"one\"\n#@\t\"vector3 d\" [1\n#@ 0 0]\n"
-           "  \"float radius\" 2\n#@ Meter \"fluence\" \"string name\" \"two\"\n\n#@ Meter \"fluence\" \"string name\" \"three\"");
+    import(
+        "WorldBegin\nShape \"sphere\"\n#@ Meter \"radiance\"   # a comment in a comment\n   #@ \"string name\" \"one\"\n#@\t\"vector3 d\" [1\n#@ 0 0]\n"
+        "  \"float radius\" 2\n#@ Meter \"fluence\" \"string name\" \"two\"\n\n#@ Meter \"fluence\" \"string name\" \"three\"");
     EXPECT_EQUAL_INT(result.meter_count, 3);
     EXPECT_EQUAL_TEXT(name_of(0), "one");
     EXPECT_NEAR(place_of(0).frame.z.x, 1, 0);
@@ -96,7 +100,8 @@ TEST(directives_in_comments_go_over_lines_of_their_own_and_no_others)
 
 TEST(comments_and_strings_stay_what_they_are)
 {
-    import("WorldBegin " SPHERE "# @ Meter \"fluence\"\n#@Meter \"fluence\"\n## #@ Meter \"fluence\"\n# see #@ Meter \"fluence\"\n"
+    import("WorldBegin " SPHERE
+           "# @ Meter \"fluence\"\n#@Meter \"fluence\"\n## #@ Meter \"fluence\"\n# see #@ Meter \"fluence\"\n"
            "MakeNamedMaterial \"#@ Meter\" \"string type\" \"diffuse\"\nNamedMaterial \"#@ Meter\"\n" SPHERE);
     EXPECT_EQUAL_INT(result.meter_count, 0);
     EXPECT_EQUAL_TEXT(told, "");
@@ -108,9 +113,10 @@ TEST(a_scene_without_its_meters_is_the_same_scene)
     struct sr_arena data = {0};
     struct sr_error e = {0};
     size_t shapes[2], transforms[2];
-    static const char *const texts[] = {"WorldBegin\nTranslate 1 2 3\nShape \"sphere\" \"float radius\" 2\nAttributeBegin Shape \"disk\" AttributeEnd\n",
-                                        "WorldBegin\n#@ Name \"x\"\nTranslate 1 2 3\nShape \"sphere\" #@ Meter \"flux\"\n \"float radius\" 2\n" METER
-                                        "AttributeBegin Shape \"disk\" " METER "AttributeEnd\n#@ Unknown \"a\" 1 [2 3]\n"};
+    static const char *const texts[] = {
+        "WorldBegin\nTranslate 1 2 3\nShape \"sphere\" \"float radius\" 2\nAttributeBegin Shape \"disk\" AttributeEnd\n",
+        "WorldBegin\n#@ Name \"x\"\nTranslate 1 2 3\nShape \"sphere\" #@ Meter \"flux\"\n \"float radius\" 2\n" METER
+        "AttributeBegin Shape \"disk\" " METER "AttributeEnd\n#@ Unknown \"a\" 1 [2 3]\n"};
     for (int i = 0; i < 2; ++i) {
         struct sr_pbrt_description d;
         EXPECT_EQUAL_INT(sr_pbrt_read_text("a", texts[i], strlen(texts[i]), &data, NULL, &d, &e), SR_OK);
@@ -125,7 +131,8 @@ TEST(a_scene_without_its_meters_is_the_same_scene)
 
 TEST(unknown_comments_are_told_and_left)
 {
-    expect_warning("WorldBegin " SPHERE "#@ Metre \"irradiance\" \"string name\" \"desk\"\n#@ \"point3 p\" [0 0 1]\n" METER,
+    expect_warning("WorldBegin " SPHERE
+                   "#@ Metre \"irradiance\" \"string name\" \"desk\"\n#@ \"point3 p\" [0 0 1]\n" METER,
                    "m.pbrt:2:4: #@ Metre is not known, and stays a comment: did you mean \"Meter\"?");
     import("WorldBegin " SPHERE "#@ Frobnicate 1 2 [3\n#@ Meter \"fluence\"\n");
     EXPECT_EQUAL_INT(result.meter_count, 1);
@@ -136,27 +143,42 @@ TEST(unknown_comments_are_told_and_left)
 TEST(mistakes_in_meters_tell_place_and_remedy)
 {
     expect_error(METER "WorldBegin " SPHERE, "m.pbrt:1:4: Meter may not stand before WorldBegin");
-    expect_error("WorldBegin " SPHERE "#@ Meter \"iradiance\"\n", "m.pbrt:2:4: Meter \"iradiance\": there is no such kind of meter: did you mean \"irradiance\"?");
-    expect_error("WorldBegin " SPHERE "#@ Meter irradiance\n", "m.pbrt:2:10: Meter: irradiance: expected the name of a kind of meter");
-    expect_error("WorldBegin " SPHERE "#@ Meter \"irradiance\" \"point3 p\" [1 2\n", "among the values of \"point3 p\"");
+    expect_error("WorldBegin " SPHERE "#@ Meter \"iradiance\"\n",
+                 "m.pbrt:2:4: Meter \"iradiance\": there is no such kind of meter: did you mean \"irradiance\"?");
+    expect_error("WorldBegin " SPHERE "#@ Meter irradiance\n",
+                 "m.pbrt:2:10: Meter: irradiance: expected the name of a kind of meter");
+    expect_error("WorldBegin " SPHERE "#@ Meter \"irradiance\" \"point3 p\" [1 2\n",
+                 "among the values of \"point3 p\"");
     expect_error("WorldBegin " SPHERE "#@ Meter \"irradiance\" \"float p\" 3\n", "has the wrong type: expected point3");
     expect_error("WorldBegin " SPHERE "#@ Meter \"irradiance\" \"normal n\" [0 0 0]\n", "\"n\" has no direction");
-    expect_error("WorldBegin " SPHERE "#@ Meter \"radiance\" \"float halfangle\" 200\n", "is 200: expected 0 to 180 deg");
+    expect_error("WorldBegin " SPHERE "#@ Meter \"radiance\" \"float halfangle\" 200\n",
+                 "is 200: expected 0 to 180 deg");
     expect_error("WorldBegin " SPHERE "#@ Meter \"semicylindrical\" \"vector3 facing\" [0 0 2]\n", "is along the axis");
-    expect_error("WorldBegin " SPHERE METER METER, "m.pbrt:3:4: Meter \"irradiance\": the name \"a\" is taken, by line 2");
+    expect_error("WorldBegin " SPHERE METER METER,
+                 "m.pbrt:3:4: Meter \"irradiance\": the name \"a\" is taken, by line 2");
     expect_error("WorldBegin " SPHERE "#@ Meter \"flux\"\n", "expected \"vector3 u\" and \"vector3 v\"");
-    expect_error("WorldBegin " SPHERE "#@ Meter \"irradiance\" \"string reading\" \"spectrum\" \"float lambda\" [400 -1 700]\n", "first, step, last");
-    expect_error("WorldBegin " SPHERE "#@ Meter \"irradiance\" \"string reading\" \"light\"\n", "expected value|spectrum|colour");
-    expect_error("WorldBegin\n#@ Name \"ball\"\n" SPHERE "#@ Meter \"flux\" \"string surface\" \"bal\"\n", "m.pbrt:4:17: Meter \"flux\": no shape has the name \"bal\"");
-    expect_error("WorldBegin\n#@ Name \"ball\"\n" SPHERE "#@ Meter \"fluence\" \"string surface\" \"ball\"\n", "does not measure on a shape");
-    expect_error("WorldBegin ObjectBegin \"o\"\n#@ Name \"ball\"\n" SPHERE "ObjectEnd\n#@ Meter \"flux\" \"string surface\" \"ball\"\n", "belongs to an object");
+    expect_error("WorldBegin " SPHERE
+                 "#@ Meter \"irradiance\" \"string reading\" \"spectrum\" \"float lambda\" [400 -1 700]\n",
+                 "first, step, last");
+    expect_error("WorldBegin " SPHERE "#@ Meter \"irradiance\" \"string reading\" \"light\"\n",
+                 "expected value|spectrum|colour");
+    expect_error("WorldBegin\n#@ Name \"ball\"\n" SPHERE "#@ Meter \"flux\" \"string surface\" \"bal\"\n",
+                 "m.pbrt:4:17: Meter \"flux\": no shape has the name \"bal\"");
+    expect_error("WorldBegin\n#@ Name \"ball\"\n" SPHERE "#@ Meter \"fluence\" \"string surface\" \"ball\"\n",
+                 "does not measure on a shape");
+    expect_error("WorldBegin ObjectBegin \"o\"\n#@ Name \"ball\"\n" SPHERE
+                 "ObjectEnd\n#@ Meter \"flux\" \"string surface\" \"ball\"\n",
+                 "belongs to an object");
     expect_error("WorldBegin ObjectBegin \"o\"\n" SPHERE METER "ObjectEnd\n", "Meter inside of an object");
-    expect_warning("WorldBegin " SPHERE "#@ Meter \"irradiance\" \"normal normals\" [0 0 1]\n", "unused parameter \"normal normals\" of Meter \"irradiance\"");
+    expect_warning("WorldBegin " SPHERE "#@ Meter \"irradiance\" \"normal normals\" [0 0 1]\n",
+                   "unused parameter \"normal normals\" of Meter \"irradiance\"");
 }
 
 TEST(shapes_of_one_name_are_one_surface)
 {
-    import("WorldBegin\n#@ Name \"s\"\n" SPHERE "Translate 5 0 0\n#@ Name \"s\"\nShape \"disk\" \"float radius\" 2\n" SPHERE "#@ Meter \"flux\" \"string surface\" \"s\"\n");
+    import("WorldBegin\n#@ Name \"s\"\n" SPHERE
+           "Translate 5 0 0\n#@ Name \"s\"\nShape \"disk\" \"float radius\" 2\n" SPHERE
+           "#@ Meter \"flux\" \"string surface\" \"s\"\n");
     EXPECT_EQUAL_INT(result.meter_count, 1);
     EXPECT_RELATIVE(sr_meter_common(&result.meters[0])->surface.area, 8 * (double)SR_PI, 1e-5); // 4 pi + 4 pi
     int on_disk = 0;

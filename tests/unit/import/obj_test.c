@@ -48,7 +48,8 @@ static double area_of(size_t shape, double *of_vector)
     const struct sr_pbrt_param *P = param(shape, "P"), *indices = param(shape, "indices");
     double area = 0, sum[3] = {0, 0, 0};
     for (uint32_t i = 0; i + 2 < indices->count; i += 3) {
-        const float *a = P->floats + 3 * indices->ints[i], *b = P->floats + 3 * indices->ints[i + 1], *c = P->floats + 3 * indices->ints[i + 2];
+        const float *a = P->floats + 3 * indices->ints[i], *b = P->floats + 3 * indices->ints[i + 1],
+                    *c = P->floats + 3 * indices->ints[i + 2];
         double u[3], v[3], n[3];
         for (int k = 0; k < 3; ++k) {
             u[k] = (double)b[k] - (double)a[k];
@@ -66,7 +67,8 @@ static double area_of(size_t shape, double *of_vector)
 
 TEST(obj_quads_share_corners_that_agree)
 {
-    static const char text[] = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nvt 0 0\nvt 1 0\nf 1/1 2/1 3/1 4/1\nf 2/1 5/2 6/2 3/1\n";
+    static const char text[] =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nvt 0 0\nvt 1 0\nf 1/1 2/1 3/1 4/1\nf 2/1 5/2 6/2 3/1\n";
     EXPECT(read_as(false, text, strlen(text)) == SR_OK);
     EXPECT_EQUAL_INT(d.shapes.count, 1);
     EXPECT_EQUAL_INT(param(0, "P")->count, 18);
@@ -80,7 +82,8 @@ TEST(obj_quads_share_corners_that_agree)
 
 TEST(obj_corners_with_two_normals_are_two_vertices)
 {
-    static const char text[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvn 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//1\nf 2//2 4//2 3//2\n";
+    static const char text[] =
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvn 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//1\nf 2//2 4//2 3//2\n";
     EXPECT(read_as(false, text, strlen(text)) == SR_OK);
     EXPECT_EQUAL_INT(param(0, "P")->count, 18);
     EXPECT_EQUAL_INT(param(0, "N")->count, 18);
@@ -125,7 +128,8 @@ TEST(polygons_of_stars_keep_their_area)
 
 TEST(obj_groups_and_materials_make_shapes)
 {
-    static const char text[] = "o a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nusemtl nothing\nf 1 2 3\ng b c\nf 3 2 1\no a\nf 3 2 1 \\\n 2\n";
+    static const char text[] =
+        "o a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nusemtl nothing\nf 1 2 3\ng b c\nf 3 2 1\no a\nf 3 2 1 \\\n 2\n";
     EXPECT(read_as(false, text, strlen(text)) == SR_OK);
     EXPECT_EQUAL_INT(d.shapes.count, 2); // an unknown material is none
     EXPECT_EQUAL_TEXT(SR_PBRT_AT(d.shapes, struct sr_pbrt_shape, 1)->name, "b c");
@@ -167,8 +171,9 @@ static void put_float(char *to, float value)
 TEST(stl_binary_and_ascii_are_one_mesh)
 {
     static const float P[2][9] = {{0, 0, 0, 1, 0, 0, 0, 1, 0}, {1, 0, 0, 1, 1, 0, 0, 1, 0}};
-    static const char text[] = "solid quad\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
-                               "facet normal 0 0 1\nouter loop\nvertex 1 0 0\n vertex 1 1 0\nvertex -0 1 0\nendloop\nendfacet\nendsolid\n";
+    static const char text[] =
+        "solid quad\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+        "facet normal 0 0 1\nouter loop\nvertex 1 0 0\n vertex 1 1 0\nvertex -0 1 0\nendloop\nendfacet\nendsolid\n";
     char binary[185] = "solid, though it is not text"; // as some programs write it
     binary[80] = 2;
     for (int t = 0; t < 2; ++t)

@@ -234,8 +234,8 @@ TEST(lies_about_sizes_are_found_before_memory_is_asked_for)
     expect_refusal("ply\nformat ascii 1.0\n", "m.ply: the head is cut short: expected \"end_header\"");
 }
 
-/* 1.1 million triangles, as vertices of 12 bytes and faces of 13: 21 MB. Asks for 60 ms of a release build; checks only that
- * it is no more than ten times that, for machines are busy. */
+/* 1.1 million triangles, as vertices of 12 bytes and faces of 13: 21 MB. Asks for 60 ms of a release build; checks only
+ * that it is no more than ten times that, for machines are busy. */
 TEST(large_binary_ply_is_copied_in_bulk)
 {
     uint32_t side = 742, vertices = side * side, faces = 2 * (side - 1) * (side - 1);

@@ -62,8 +62,13 @@ TEST(curves_with_all_else_in_common_are_one_shape)
 TEST(curves_with_another_state_are_another_shape)
 {
     static const char *const between[] = {
-        "Material \"diffuse\"\n", "ReverseOrientation\n", "Translate 1 0 0\n", "Shape \"sphere\"\n", "Attribute \"shape\" \"float alpha\" 0.5\n",
-        "#@ Name \"strand\"\n", "ObjectBegin \"o\"\n",
+        "Material \"diffuse\"\n",
+        "ReverseOrientation\n",
+        "Translate 1 0 0\n",
+        "Shape \"sphere\"\n",
+        "Attribute \"shape\" \"float alpha\" 0.5\n",
+        "#@ Name \"strand\"\n",
+        "ObjectBegin \"o\"\n",
     };
     for (size_t i = 0; i < sizeof between / sizeof *between; ++i) {
         char text[1024];
@@ -75,18 +80,25 @@ TEST(curves_with_another_state_are_another_shape)
     }
     EXPECT_EQUAL_INT(counts_of("WorldBegin\n" STRAND "\n" STRAND "\"string type\" \"cylinder\"\n").objects, 2);
     // what changes nothing does not part them
-    EXPECT_EQUAL_INT(counts_of("WorldBegin\n" STRAND "\nAttributeBegin\n" STRAND "\nAttributeEnd\nAttributeBegin Identity\n" STRAND "AttributeEnd\n").objects, 1);
+    EXPECT_EQUAL_INT(counts_of("WorldBegin\n" STRAND "\nAttributeBegin\n" STRAND
+                               "\nAttributeEnd\nAttributeBegin Identity\n" STRAND "AttributeEnd\n")
+                         .objects,
+                     1);
 }
 
 TEST(curves_stand_where_the_file_says)
 {
-    EXPECT_EQUAL_INT(import("WorldBegin\nTranslate 10 0 0\nScale 2 2 2\nShape \"curve\" \"point3 P\" [0 0 0 0 0 1 0 0 2 0 0 3] \"float width\" 0.5\n"
-                            "Shape \"curve\" \"point3 P\" [0 5 0 0 5 1 0 5 2 0 5 3] \"float width\" 0.25\n"), SR_OK);
+    EXPECT_EQUAL_INT(
+        import(
+            "WorldBegin\nTranslate 10 0 0\nScale 2 2 2\nShape \"curve\" \"point3 P\" [0 0 0 0 0 1 0 0 2 0 0 3] \"float width\" 0.5\n"
+            "Shape \"curve\" \"point3 P\" [0 5 0 0 5 1 0 5 2 0 5 3] \"float width\" 0.25\n"),
+        SR_OK);
     struct sr_hit hit;
     for (int strand = 0; strand < 2; ++strand)
         for (int side = -1; side <= 1; side += 2) {
             float half = strand ? 0.25f : 0.5f, y = strand ? 10 : 0;
-            struct sr_ray in = {.o = {0, y + (float)side * 0.99f * half, 3}, .d = {1, 0, 0}, .t_max = INFINITY}, out = in;
+            struct sr_ray in = {.o = {0, y + (float)side * 0.99f * half, 3}, .d = {1, 0, 0}, .t_max = INFINITY},
+                          out = in;
             out.o.y = y + (float)side * 1.01f * half;
             EXPECT(sr_raycast(result.scene, &in, &hit));
             EXPECT_NEAR(hit.t, 10, 1e-5);
@@ -100,22 +112,27 @@ TEST(curves_stand_where_the_file_says)
 
 TEST(what_is_wrong_with_a_curve_is_told_where_it_stands)
 {
-    expect_error("WorldBegin\n" STRAND "\n" STRAND "\nShape \"curve\" \"point3 P\" [0 0 0 1 1 1]\n", "s.pbrt:4:1: Shape \"curve\": curve: 2 \"P\", expected 4");
+    expect_error("WorldBegin\n" STRAND "\n" STRAND "\nShape \"curve\" \"point3 P\" [0 0 0 1 1 1]\n",
+                 "s.pbrt:4:1: Shape \"curve\": curve: 2 \"P\", expected 4");
     expect_error("WorldBegin\n" STRAND "\"integer degree\" 4\n", "expected 2 to 3");
     expect_error("WorldBegin\n" STRAND "\"string basis\" \"hermite\"\n", "expected bezier|bspline");
     expect_error("WorldBegin\n" STRAND "\"string type\" \"tube\"\n", "expected flat|ribbon|cylinder");
     expect_error("WorldBegin\n" STRAND "\"float width\" -1\n", "expected 0 or more");
     expect_error("WorldBegin\n" STRAND "\"string type\" \"ribbon\"\n", "0 \"N\", expected 2");
     expect_error("WorldBegin\nShape \"curve\"\n", "0 \"P\"");
-    expect_error("WorldBegin\n#@ Name \"hair\"\n" STRAND "\n#@ Meter \"flux\" \"string surface\" \"hair\"\n", "which turns to whoever looks");
+    expect_error("WorldBegin\n#@ Name \"hair\"\n" STRAND "\n#@ Meter \"flux\" \"string surface\" \"hair\"\n",
+                 "which turns to whoever looks");
     expect_error("WorldBegin\nShape \"loopsubdiv\" \"integer levels\" 31\n", "expected 0 to 30");
-    expect_error("WorldBegin\nShape \"loopsubdiv\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2] \"integer levels\" 20\n", "at most");
+    expect_error(
+        "WorldBegin\nShape \"loopsubdiv\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 2] \"integer levels\" 20\n",
+        "at most");
     expect_error("WorldBegin\nShape \"loopsubdiv\" \"point3 P\" [0 0 0 1 0 0 0 1 0]\n", "\"indices\" is missing");
 }
 
 TEST(an_image_for_sampling_does_not_shine)
 {
-    const char *patch = "WorldBegin\nAreaLightSource \"diffuse\"\nShape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 1] \"string emissionfilename\" \"no.png\"\n";
+    const char *patch =
+        "WorldBegin\nAreaLightSource \"diffuse\"\nShape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 1] \"string emissionfilename\" \"no.png\"\n";
     EXPECT_EQUAL_INT(counts_of(patch).lights, 1);
     EXPECT(strstr(notes, "shapes.pbrt:3:") && strstr(notes, "does not glow"));
 }
@@ -133,9 +150,11 @@ TEST(curves_do_not_shine)
 TEST(curves_of_instances_and_moving_ones_face_the_ray)
 {
     static const char *const scenes[] = {
-        "WorldBegin\nObjectBegin \"o\"\n" STRAND "ObjectEnd\nRotate 70 1 2 0\nScale 1 2 3\nTranslate 1 1 0\nObjectInstance \"o\"\n",
+        "WorldBegin\nObjectBegin \"o\"\n" STRAND
+        "ObjectEnd\nRotate 70 1 2 0\nScale 1 2 3\nTranslate 1 1 0\nObjectInstance \"o\"\n",
         "WorldBegin\nActiveTransform EndTime\nRotate 90 1 0 0\nActiveTransform All\n" STRAND "\n",
-        "WorldBegin\nObjectBegin \"o\"\n" STRAND "ObjectEnd\nActiveTransform EndTime\nTranslate 2 0 0\nRotate 60 1 1 0\nActiveTransform All\nObjectInstance \"o\"\n",
+        "WorldBegin\nObjectBegin \"o\"\n" STRAND
+        "ObjectEnd\nActiveTransform EndTime\nTranslate 2 0 0\nRotate 60 1 1 0\nActiveTransform All\nObjectInstance \"o\"\n",
     };
     for (size_t k = 0; k < sizeof scenes / sizeof *scenes; ++k) {
         if (import(scenes[k]) != SR_OK)

@@ -68,7 +68,8 @@ TEST(guided_directions_are_drawn_as_their_density_says)
         enum { FINE = 256 };
         for (int y = 0; y < FINE; ++y)
             for (int x = 0; x < FINE; ++x) {
-                sr_vec3 w = sr_equal_area_square_to_sphere((sr_vec2){((float)x + 0.5f) / FINE, ((float)y + 0.5f) / FINE});
+                sr_vec3 w =
+                    sr_equal_area_square_to_sphere((sr_vec2){((float)x + 0.5f) / FINE, ((float)y + 0.5f) / FINE});
                 double share = (double)sr_guide_pdf(g, cell, w) * 4 * (double)SR_PI / (FINE * FINE);
                 integral += share;
                 expected[x * GRID / FINE + GRID * (y * GRID / FINE)] += share * n;
@@ -85,9 +86,11 @@ TEST(guides_know_where_light_comes_from_and_where_it_pays_to_know)
     sr_vec3 there = {1, 0, 0}, elsewhere = {-1, 0, 0};
     const struct sr_guide_cell *dark = cell_at(g, -0.5f), *even = cell_at(g, 0.5f);
     EXPECT(sr_guide_cell_count(g) > 8);
-    printf("  toward the light %.3g, elsewhere %.3g\n", (double)sr_guide_pdf(g, dark, there), (double)sr_guide_pdf(g, dark, elsewhere));
+    printf("  toward the light %.3g, elsewhere %.3g\n", (double)sr_guide_pdf(g, dark, there),
+           (double)sr_guide_pdf(g, dark, elsewhere));
     EXPECT(sr_guide_pdf(g, dark, there) > 4 * SR_INV_PI / 4);
-    EXPECT(sr_guide_pdf(g, dark, elsewhere) < 0.5f * SR_INV_PI / 4); // what earlier rounds have seen from larger cells fades
+    EXPECT(sr_guide_pdf(g, dark, elsewhere) <
+           0.5f * SR_INV_PI / 4); // what earlier rounds have seen from larger cells fades
     EXPECT_RELATIVE(sr_guide_pdf(g, even, elsewhere), SR_INV_PI / 4, 0.3);
     EXPECT(dark->share[0] == sr_guide_shares[SR_GUIDE_SHARES - 1]);
     EXPECT(even->share[0] == 0); // all directions are as good: the guide is not worth its price
@@ -110,7 +113,8 @@ TEST(guides_do_not_depend_on_the_order_of_records)
     sr_guide_destroy(b);
 }
 
-/* Lambert's surfaces with x < 0 bring 0 or 8, by half each, for 2; those with x > 0 always 1 for 4; others are never met. */
+/* Lambert's surfaces with x < 0 bring 0 or 8, by half each, for 2; those with x > 0 always 1 for 4; others are never
+ * met. */
 static struct sr_guide *returned(bool is_reversed)
 {
     struct sr_box bounds = {{-1, 0, 0}, {1, 1, 1}};

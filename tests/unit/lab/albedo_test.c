@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Albedos of all models against figures that other code has computed by two quadratures each: in single precision to 1e-5,
- * in double precision to 1e-7, or to the last digit that the source prints.
+/* Albedos of all models against figures that other code has computed by two quadratures each: in single precision to
+ * 1e-5, in double precision to 1e-7, or to the last digit that the source prints.
  *
  *     E(theta) = INTEGRAL f cos theta dw    [1]    at 0, 30, 60 and 80 deg
  *
@@ -22,13 +22,25 @@ static const double theta[4] = {0, 30, 60, 80};
 static const struct row reflection[] = {
     // matte
     {"diffuse reflectance=.3", 0, 550, 12, {.3, .3, .3, .3}},
-    {"oren_nayar variant=qualitative reflectance=.9 sigma=.5235987756", 0, 550, 6, {.695798, .732880, .786699, .829379}},
+    {"oren_nayar variant=qualitative reflectance=.9 sigma=.5235987756",
+     0,
+     550,
+     6,
+     {.695798, .732880, .786699, .829379}},
     {"oren_nayar reflectance=.9 sigma=.5235987756", 0, 550, 6, {.789205, .791965, .817478, .861554}},
-    {"oren_nayar variant=qualitative reflectance=1 sigma=.5", 0, 550, 11, {.784482758691, .82472469096, .883128419881, .92944459343}},
+    {"oren_nayar variant=qualitative reflectance=1 sigma=.5",
+     0,
+     550,
+     11,
+     {.784482758691, .82472469096, .883128419881, .92944459343}},
     {"oren_nayar reflectance=1 sigma=.5", 0, 550, 6, {.896325, .899320, .927006, .974838}},
     {"eon variant=fon reflectance=.8 roughness=.5", 0, 550, 6, {.699364, .704790, .739351, .779484}},
     {"eon variant=fon reflectance=1 roughness=1", 0, 550, 6, {.776522, .788571, .865320, .954442}},
-    {"eon variant=fon reflectance=1 roughness=.5", 0, 550, 11, {.874204808855, .880987224927, .924188697546, .97435554002}},
+    {"eon variant=fon reflectance=1 roughness=.5",
+     0,
+     550,
+     11,
+     {.874204808855, .880987224927, .924188697546, .97435554002}},
     {"eon reflectance=.8 roughness=.5", 0, 550, 6, {.778234, .779408, .786883, .795563}},
     {"eon reflectance=1 roughness=1", 0, 550, 6, {1, 1, 1, 1}},
     {"minnaert reflectance=.8 k=.75", 0, 550, 6, {.8, .829292, .951366, 1.239289}},
@@ -37,45 +49,98 @@ static const struct row reflection[] = {
     // empirical lobes
     {"phong_modified reflectance=0 specular=1 exponent=20", 0, 550, 6, {1, .866025, .500509, .200342}},
     {"phong_modified reflectance=0 specular=1 exponent=100", 0, 550, 6, {1, .866025, .5, .175233}},
-    {"phong_modified reflectance=0 specular=1 exponent=50", 0, 550, 12, {1, .866025403784, .500002112234, .180808032686}},
+    {"phong_modified reflectance=0 specular=1 exponent=50",
+     0,
+     550,
+     12,
+     {1, .866025403784, .500002112234, .180808032686}},
     {"blinn_phong reflectance=0 specular=1 exponent=20", 0, 550, 6, {1, .775700, .327950, .110907}},
     {"blinn_phong reflectance=0 specular=1 exponent=100", 0, 550, 6, {1, .755000, .265058, .049448}},
     {"blinn_phong reflectance=0 specular=1 exponent=50", 0, 550, 10, {1, .7600030083, .280649183625, .0664218732579}},
-    {"ashikhmin_shirley reflectance=0 specular=1 exponent_x=100 exponent_y=100", 0, 550, 6, {.961165, .933701, .845943, .659848}},
-    {"ashikhmin_shirley reflectance=0 specular=.05 exponent_x=100 exponent_y=100", 0, 550, 6, {.048058, .046801, .069181, .221629}},
-    {"ashikhmin_shirley reflectance=.5 specular=.05 exponent_x=100 exponent_y=100", 0, 550, 7, {.508214509767, .493967771133, .431461029558, .39500557335}},
-    {"ashikhmin_shirley reflectance=0 specular=1 exponent_x=10 exponent_y=500", 0, 550, 6, {.836902, .798824, .666154, .557126}},
-    {"ashikhmin_shirley reflectance=0 specular=1 exponent_x=10 exponent_y=500", 90, 550, 6, {.836902, .831872, .809932, .712381}},
+    {"ashikhmin_shirley reflectance=0 specular=1 exponent_x=100 exponent_y=100",
+     0,
+     550,
+     6,
+     {.961165, .933701, .845943, .659848}},
+    {"ashikhmin_shirley reflectance=0 specular=.05 exponent_x=100 exponent_y=100",
+     0,
+     550,
+     6,
+     {.048058, .046801, .069181, .221629}},
+    {"ashikhmin_shirley reflectance=.5 specular=.05 exponent_x=100 exponent_y=100",
+     0,
+     550,
+     7,
+     {.508214509767, .493967771133, .431461029558, .39500557335}},
+    {"ashikhmin_shirley reflectance=0 specular=1 exponent_x=10 exponent_y=500",
+     0,
+     550,
+     6,
+     {.836902, .798824, .666154, .557126}},
+    {"ashikhmin_shirley reflectance=0 specular=1 exponent_x=10 exponent_y=500",
+     90,
+     550,
+     6,
+     {.836902, .831872, .809932, .712381}},
     // microfacets
     {GGX "alpha_x=.1 alpha_y=.1", 0, 550, 6, {.988304, .986087, .969205, .895519}},
     {GGX "alpha_x=.3 alpha_y=.3", 0, 550, 12, {.877358415789, .863872895533, .821711003151, .848232379451}},
     {GGX "alpha_x=.5 alpha_y=.5", 0, 550, 6, {.687849, .683052, .698251, .805323}},
     {GGX "alpha_x=1 alpha_y=1", 0, 550, 6, {.306853, .335194, .450694, .668186}},
     {GGX "masking=product alpha_x=.1 alpha_y=.1", 0, 550, 6, {.988304, .986085, .969115, .891971}},
-    {GGX "masking=product alpha_x=.3 alpha_y=.3", 0, 550, 11, {.877358415789, .86362169332, .818133486743, .821077813807}},
+    {GGX "masking=product alpha_x=.3 alpha_y=.3",
+     0,
+     550,
+     11,
+     {.877358415789, .86362169332, .818133486743, .821077813807}},
     {GGX "masking=product alpha_x=.5 alpha_y=.5", 0, 550, 6, {.687849, .681647, .686007, .746902}},
     {GGX "masking=product alpha_x=1 alpha_y=1", 0, 550, 6, {.306853, .328884, .409137, .522904}},
     {GGX "alpha_x=.1 alpha_y=.4", 0, 550, 6, {.878205, .876300, .861860, .801311}},
     {GGX "alpha_x=.1 alpha_y=.4", 45, 550, 6, {.878205, .869312, .838413, .860780}},
     {GGX "alpha_x=.1 alpha_y=.4", 90, 550, 6, {.878205, .863644, .835280, .884000}},
     {GGX "distribution=beckmann alpha_x=.2 alpha_y=.2", 0, 550, 6, {1, .999877, .972364, .909446}},
-    {GGX "distribution=beckmann alpha_x=.3 alpha_y=.3", 0, 550, 12, {.999713154351, .991445180784, .923288712076, .916341289067}},
+    {GGX "distribution=beckmann alpha_x=.3 alpha_y=.3",
+     0,
+     550,
+     12,
+     {.999713154351, .991445180784, .923288712076, .916341289067}},
     {GGX "distribution=beckmann alpha_x=.5 alpha_y=.5", 0, 550, 6, {.942998, .902793, .869360, .929020}},
-    {GGX "distribution=beckmann masking=v_cavity alpha_x=.2 alpha_y=.2", 0, 550, 6, {.999980, .998851, .965587, .933892}},
-    {GGX "distribution=beckmann masking=v_cavity alpha_x=.3 alpha_y=.3", 0, 550, 6, {.995578, .981194, .924766, .944915}},
-    {GGX "distribution=beckmann masking=v_cavity alpha_x=.5 alpha_y=.5", 0, 550, 6, {.892423, .875045, .886876, .955095}},
+    {GGX "distribution=beckmann masking=v_cavity alpha_x=.2 alpha_y=.2",
+     0,
+     550,
+     6,
+     {.999980, .998851, .965587, .933892}},
+    {GGX "distribution=beckmann masking=v_cavity alpha_x=.3 alpha_y=.3",
+     0,
+     550,
+     6,
+     {.995578, .981194, .924766, .944915}},
+    {GGX "distribution=beckmann masking=v_cavity alpha_x=.5 alpha_y=.5",
+     0,
+     550,
+     6,
+     {.892423, .875045, .886876, .955095}},
     {"microfacet fresnel=schlick specular=.04 alpha_x=.3 alpha_y=.3", 0, 550, 6, {.035127, .035179, .051124, .118601}},
     {"conductor eta=.2 k=3 alpha_x=.3 alpha_y=.3", 0, 550, 6, {.809994, .797035, .756184, .782682}},
     {"dielectric eta=1.5 alpha_x=.1 alpha_y=.1", 0, 550, 6, {.039637, .041663, .085882, .255755}},
     {"dielectric eta=1.5 alpha_x=.3 alpha_y=.3", 0, 550, 6, {.035597, .037608, .060983, .124530}},
     {"dielectric eta=1.5 alpha_x=.5 alpha_y=.5", 0, 550, 6, {.028175, .029831, .043935, .082835}},
-    // from inside, where total reflection has a kink: the source's figures are good to 4 or 5 digits, as it says elsewhere
+    // from inside, where total reflection has a kink: the source's figures are good to 4 or 5 digits, as it says
+    // elsewhere
     {"dielectric eta=.66666667 alpha_x=.1 alpha_y=.1", 0, 550, 5, {.042541, .105415, .940337, .875191}},
     {"dielectric eta=.66666667 alpha_x=.3 alpha_y=.3", 0, 550, 5, {.048744, .183931, .653744, .731028}},
     {"dielectric eta=.66666667 alpha_x=.5 alpha_y=.5", 0, 550, 4, {.046171, .155562, .434486, .598924}},
     // Ward
-    {"ward reflectance=0 specular=1 alpha_x=.2 alpha_y=.2", 0, 550, 9, {.894917170147, .777279120997, .458850939206, .216226840251}},
-    {"ward_duer reflectance=0 specular=1 alpha_x=.2 alpha_y=.2", 0, 550, 12, {.928313221932, .928302290704, .916914559301, .917777094149}},
+    {"ward reflectance=0 specular=1 alpha_x=.2 alpha_y=.2",
+     0,
+     550,
+     9,
+     {.894917170147, .777279120997, .458850939206, .216226840251}},
+    {"ward_duer reflectance=0 specular=1 alpha_x=.2 alpha_y=.2",
+     0,
+     550,
+     12,
+     {.928313221932, .928302290704, .916914559301, .917777094149}},
     {"ward_gmd reflectance=0 specular=1 alpha_x=.2 alpha_y=.2", 0, 550, 6, {.96, .952649, .897580, .799414}},
     {"ward_gmd reflectance=0 specular=1 alpha_x=.1 alpha_y=.3", 0, 550, 6, {.95, .948225, .933362, .832459}},
     {"ward_gmd reflectance=0 specular=1 alpha_x=.1 alpha_y=.3", 90, 550, 6, {.95, .932881, .853702, .799959}},
@@ -86,10 +151,26 @@ static const struct row reflection[] = {
     {"conductor eta=1.0152 k=6.6273", 0, 550, 6, {.915369, .914660, .900335, .859760}},
     {"conductor eta=3.1812 k=3.3291", 0, 550, 6, {.554537, .553368, .533355, .543605}},
     {"thin_dielectric eta=1.5", 0, 550, 6, {.076923, .079266, .151872, .541527}},
-    {"thin_film_dielectric eta=1 film_eta=1.33 film_thickness=300", 0, 550, 6, {.075430, (.091866 + .036123) / 2, (.053629 + .001713) / 2, (.035937 + .009908) / 2}},
-    {"thin_film_dielectric eta=1.52 film_eta=1.38 film_thickness=99.6377", 0, 550, 6, {.012601, (.020636 + .007017) / 2, (.100818 + .006049) / 2, (.449406 + .243173) / 2}},
-    {"thin_film_conductor eta=1.0152 k=6.6273 film_eta=1.5 film_thickness=400", 0, 550, 6, {.887276, (.921676 + .897827) / 2, (.948130 + .846079) / 2, (.959166 + .905839) / 2}},
-    {"multilayer_dielectric eta=1.52 layer_count=7 high_eta=2.35 high_thickness=58.5106383 low_eta=1.38 low_thickness=99.6376812", 0, 550, 6, {.955855, (.968879 + .926670) / 2, (.983036 + .537311) / 2, (.993032 + .397242) / 2}},
+    {"thin_film_dielectric eta=1 film_eta=1.33 film_thickness=300",
+     0,
+     550,
+     6,
+     {.075430, (.091866 + .036123) / 2, (.053629 + .001713) / 2, (.035937 + .009908) / 2}},
+    {"thin_film_dielectric eta=1.52 film_eta=1.38 film_thickness=99.6377",
+     0,
+     550,
+     6,
+     {.012601, (.020636 + .007017) / 2, (.100818 + .006049) / 2, (.449406 + .243173) / 2}},
+    {"thin_film_conductor eta=1.0152 k=6.6273 film_eta=1.5 film_thickness=400",
+     0,
+     550,
+     6,
+     {.887276, (.921676 + .897827) / 2, (.948130 + .846079) / 2, (.959166 + .905839) / 2}},
+    {"multilayer_dielectric eta=1.52 layer_count=7 high_eta=2.35 high_thickness=58.5106383 low_eta=1.38 low_thickness=99.6376812",
+     0,
+     550,
+     6,
+     {.955855, (.968879 + .926670) / 2, (.983036 + .537311) / 2, (.993032 + .397242) / 2}},
     // ground and dust
     {"lommel_seeliger albedo=.5", 0, 550, 6, {.076713, .083799, .112673, .167046}},
     {"lommel_seeliger albedo=.9", 0, 550, 11, {.138083768748, .150837336449, .20281223505, .300683674743}},
@@ -100,9 +181,17 @@ static const struct row reflection[] = {
     {"hapke albedo=.3 b=.3 c=.4 surge=1 surge_width=.06", 0, 550, 6, {.081, .084252, .098713, .128649}},
     {"hapke albedo=.3 b=.3 c=.4 surge=1 surge_width=.06 theta_bar=20", 0, 550, 6, {.078036, .080716, .086067, .089164}},
     {"hapke albedo=.3 b=.3 c=.4 surge=1 surge_width=.06 version=1981", 0, 550, 6, {.080428, .083585, .097583, .126558}},
-    {"hapke albedo=.9 b=0 c=0 surge=0 version=1981", 0, 550, 12, {.404754959068, .423913459401, .486743912359, .566352568368}},
+    {"hapke albedo=.9 b=0 c=0 surge=0 version=1981",
+     0,
+     550,
+     12,
+     {.404754959068, .423913459401, .486743912359, .566352568368}},
     // the older and the newer practice
-    {"lafortune reflectance=0 specular=1 normalisation=none c_x=-.95 c_y=-.95 c_z=.85 exponent=10", 0, 550, 6, {.103083, .117167, .113137, .065603}},
+    {"lafortune reflectance=0 specular=1 normalisation=none c_x=-.95 c_y=-.95 c_z=.85 exponent=10",
+     0,
+     550,
+     6,
+     {.103083, .117167, .113137, .065603}},
     {"coupled reflectance=.5 specular=.05", 0, 550, 6, {.525000, .525021, .539844, .708028}},
     {"sheen alpha=.5", 0, 550, 6, {.083333, .124507, .267132, .476357}},
     {"sheen alpha=.2", 0, 550, 6, {.019642, .051406, .212796, .538518}},
@@ -112,7 +201,11 @@ static const struct row reflection[] = {
     {"disney reflectance=.5 roughness=.5 subsurface=1", 0, 550, 5, {.413783, .447131, .595003, .787556}},
     {"disney reflectance=1 roughness=1", 0, 550, 6, {1.048021, 1.047541, 1.075627, 1.307418}},
     // coats
-    {"coated_diffuse reflectance=.5 coat_eta=1.5 thickness=0 max_depth=100", 0, 550, 6, {.316071, .317156, .351113, .563785}},
+    {"coated_diffuse reflectance=.5 coat_eta=1.5 thickness=0 max_depth=100",
+     0,
+     550,
+     6,
+     {.316071, .317156, .351113, .563785}},
 };
 
 /* The same at other angles. */
@@ -145,7 +238,8 @@ static const struct single {
     {"thin_film_dielectric film_eta=1.33 film_thickness=300 eta=1", 45, 450, 12, .0999111428613},
     {"thin_film_dielectric film_eta=1.33 film_thickness=300 eta=1", 45, 550, 12, .0482649076976},
     {"thin_film_dielectric film_eta=1.33 film_thickness=300 eta=1", 45, 650, 12, .00189098238075},
-    {"multilayer_dielectric eta=1.52 layer_count=7 high_eta=2.35 high_thickness=58.5106383 low_eta=1.38 low_thickness=99.6376812", 0, 450, 6, .589673},
+    {"multilayer_dielectric eta=1.52 layer_count=7 high_eta=2.35 high_thickness=58.5106383 low_eta=1.38 low_thickness=99.6376812",
+     0, 450, 6, .589673},
 };
 
 static double albedo(const struct sr_specimen *s, const struct single *row, double phi, bool in_double)
@@ -153,8 +247,10 @@ static double albedo(const struct sr_specimen *s, const struct single *row, doub
     struct sr_beam from = {.kind = SR_BEAM_DIRECTION, .theta = row->theta, .phi = phi}, to = beam("hemisphere");
     struct sr_reflectance r = {0};
     struct sr_error error = {0};
-    sr_status status = in_double ? sr_reflectance_cubature(s, SR_BLACK + (float)row->lambda, &from, &to, row->digits > 6 ? 5e-8 : 5e-7, &r, &error)
-                                 : sr_reflectance_cubature_single(s, SR_BLACK + (float)row->lambda, &from, &to, 3e-6, &r, &error);
+    sr_status status =
+        in_double ? sr_reflectance_cubature(s, SR_BLACK + (float)row->lambda, &from, &to, row->digits > 6 ? 5e-8 : 5e-7,
+                                            &r, &error)
+                  : sr_reflectance_cubature_single(s, SR_BLACK + (float)row->lambda, &from, &to, 3e-6, &r, &error);
     if (status != SR_OK)
         test_fail(__FILE__, __LINE__, "%s: %s", row->words, error.text);
     if (in_double && !r.has_converged)
@@ -193,7 +289,10 @@ static const struct lobe {
     double E[4];
 } lobes[] = {
     {"disney clearcoat=1 clearcoat_gloss=1", "disney clearcoat=0", 6, {.009370, .009370, .015041, .045660}},
-    {"disney reflectance=1 specular=0 roughness=.5", "disney reflectance=0 specular=0 roughness=.5", 8, {1.00595238095, 1.00516746422, 1.00832015749, 1.02538775313}},
+    {"disney reflectance=1 specular=0 roughness=.5",
+     "disney reflectance=0 specular=0 roughness=.5",
+     8,
+     {1.00595238095, 1.00516746422, 1.00832015749, 1.02538775313}},
 };
 
 TEST(albedos_of_single_lobes)
@@ -297,7 +396,8 @@ TEST(transmittances_of_rough_glass)
         for (int k = 0; k < 4; ++k) {
             const struct passing *row = &transmission[i];
             char words[200];
-            snprintf(words, sizeof words, "%s eta=%.8g alpha_x=%g alpha_y=%g", row->words, row->eta, row->alpha, row->alpha);
+            snprintf(words, sizeof words, "%s eta=%.8g alpha_x=%g alpha_y=%g", row->words, row->eta, row->alpha,
+                     row->alpha);
             struct sr_specimen s = specimen(words);
             struct sr_specimen_at at;
             sr_specimen_at(&s, SR_BLACK + 550, 1, &at);

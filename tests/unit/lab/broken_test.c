@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* A certificate is worth what it refuses: models that are wrong by design, each in one way, and the check that must say so.
+/* A certificate is worth what it refuses: models that are wrong by design, each in one way, and the check that must say
+ * so.
  *
  * Each is a good model whose functions are replaced by wrong ones. The good ones must pass, by the same options. */
 #include "lab/lab.h"
@@ -17,7 +18,8 @@ static const struct sr_check *find(const struct sr_certificate *c, const char *n
 }
 
 /* The certificate fails, by this check, with this in its words. */
-static void expect_failure_of(const struct sr_bsdf_model *m, const struct sr_certificate_options *o, const char *check, const char *words)
+static void expect_failure_of(const struct sr_bsdf_model *m, const struct sr_certificate_options *o, const char *check,
+                              const char *words)
 {
     struct sr_certificate c;
     struct sr_error error = {0};
@@ -301,7 +303,9 @@ TEST(broken_wards_model_does_not_tell_that_it_has_no_bound)
     struct sr_bsdf_model m = sr_bsdf_ward;
     m.largest_albedo = 0;
     struct sr_certificate_options o = options;
-    o.samples *= SR_LAMBDA_COUNT > 8 ? 4 : 1; // few directions gain energy: which are tried is luck, and changes with the wavelengths
+    o.samples *= SR_LAMBDA_COUNT > 8
+                     ? 4
+                     : 1; // few directions gain energy: which are tried is luck, and changes with the wavelengths
     expect_failure_of(&m, &o, "energy", "E = ");
 }
 
@@ -340,10 +344,8 @@ static bool reads_files(const struct sr_bsdf_model *m)
 TEST(every_model_has_a_certificate)
 {
     bool is_long = getenv("STERADIAN_TEST_EFFORT") != NULL;
-    struct sr_certificate_options o = {.sets = is_long ? 64 : 3,
-                                       .samples = is_long ? 65536 : 4096,
-                                       .seed = is_long ? 1 : 7,
-                                       .significance = 1e-6};
+    struct sr_certificate_options o = {
+        .sets = is_long ? 64 : 3, .samples = is_long ? 65536 : 4096, .seed = is_long ? 1 : 7, .significance = 1e-6};
     for (int i = 0; sr_bsdf_models[i]; ++i)
         if (!reads_files(sr_bsdf_models[i]))
             expect_pass(sr_bsdf_models[i], &o);

@@ -94,8 +94,8 @@ TEST(spectra_are_fitted_by_wavelength)
     sr_arena_free(&arena);
 }
 
-/* A Lambertian surface measured with noise of 10 %: the intervals of 95 % hold the truth in 95 % of 400 experiments, and the
- * estimates scatter as much as the uncertainties say. */
+/* A Lambertian surface measured with noise of 10 %: the intervals of 95 % hold the truth in 95 % of 400 experiments,
+ * and the estimates scatter as much as the uncertainties say. */
 TEST(intervals_cover_what_noise_hides)
 {
     enum { RUNS = 400 };

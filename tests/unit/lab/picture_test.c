@@ -114,7 +114,8 @@ TEST(a_ball_is_as_bright_as_lambert_says)
     EXPECT_EQUAL_INT(srgb[3 * ((SIZE * 7 / 8) * SIZE + SIZE * 5 / 8)], 0); // the far side of the sun is dark
 }
 
-/* Light goes through clear glass, and nothing is lost but what Fresnel turns back: the middle shows the ground behind. */
+/* Light goes through clear glass, and nothing is lost but what Fresnel turns back: the middle shows the ground behind.
+ */
 TEST(a_ball_of_glass_shows_the_sky_behind_it)
 {
     enum { SIZE = 33 };

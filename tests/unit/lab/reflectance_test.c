@@ -24,8 +24,9 @@ static struct sr_reflectance monte_carlo(const char *words, const char *from, co
     return out;
 }
 
-/* Trowbridge-Reitz, alpha = 0.3, F = 1, height-correlated: light from 30 deg, cones of 5 deg, the second about the mirror's
- * direction. Figures to ten digits by two grids of a product quadrature, made for this comparison by other code. */
+/* Trowbridge-Reitz, alpha = 0.3, F = 1, height-correlated: light from 30 deg, cones of 5 deg, the second about the
+ * mirror's direction. Figures to ten digits by two grids of a product quadrature, made for this comparison by other
+ * code. */
 #define GGX "microfacet distribution=ggx masking=smith fresnel=one alpha_x=0.3 alpha_y=0.3"
 static const struct nine {
     const char *from, *to;
@@ -172,8 +173,8 @@ TEST(coated_paint_by_both_ways)
     }
 }
 
-/* What is random is refused by cubature and measured by Monte Carlo: a lacquer that scatters, below a white base, absorbs
- * nothing, so that all light returns. */
+/* What is random is refused by cubature and measured by Monte Carlo: a lacquer that scatters, below a white base,
+ * absorbs nothing, so that all light returns. */
 TEST(random_walks_go_by_monte_carlo)
 {
     const char *lacquer = "coated_diffuse reflectance=1 albedo=1 thickness=0.5 max_depth=100";

@@ -10,10 +10,12 @@ static const struct scenery_quad lamp = {{-0.5f, -1, 2}, {0, 2, 0}, {1, 0, 0}}; 
 static double corner(double a, double b, double h)
 {
     double A = a / h, B = b / h;
-    return (A / sqrt(1 + A * A) * atan(B / sqrt(1 + A * A)) + B / sqrt(1 + B * B) * atan(A / sqrt(1 + B * B))) / (2 * pi);
+    return (A / sqrt(1 + A * A) * atan(B / sqrt(1 + A * A)) + B / sqrt(1 + B * B) * atan(A / sqrt(1 + B * B))) /
+           (2 * pi);
 }
 
-static sr_spectrum draw_E(struct sr_light light, const struct sr_point *x, struct sr_rng *rng, const struct sr_wavelengths *w)
+static sr_spectrum draw_E(struct sr_light light, const struct sr_point *x, struct sr_rng *rng,
+                          const struct sr_wavelengths *w)
 {
     struct sr_light_sample s;
     if (!sr_light_draw(light, x, (sr_vec2){sr_rng_float(rng), sr_rng_float(rng)}, w, &s))
@@ -131,7 +133,8 @@ static struct sr_light pictured(const sr_vec3 P[4], const struct sr_light_emissi
     return (struct sr_light){&sr_light_area, area};
 }
 
-/* A patch with an image: draws agree with the illuminance by cubature over (u, v), and better than without the image. */
+/* A patch with an image: draws agree with the illuminance by cubature over (u, v), and better than without the image.
+ */
 static void expect_illuminance_of_picture(const sr_vec3 P[4], sr_vec3 from)
 {
     enum { side = 16 };
@@ -141,7 +144,8 @@ static void expect_illuminance_of_picture(const sr_vec3 P[4], sr_vec3 from)
         float bright = i % 37 == 5 ? 20 : i % 3 == 0 ? 0.2f : 0;
         texels[3 * i] = bright * sr_rng_float(&rng), texels[3 * i + 1] = bright, texels[3 * i + 2] = 0.5f * bright;
     }
-    struct sr_light_emission e = {.scale = 1, .power = NAN, .two_sided = true, .texels = {side, side, 3, NULL, texels, NULL, SR_SRGB}};
+    struct sr_light_emission e = {
+        .scale = 1, .power = NAN, .two_sided = true, .texels = {side, side, 3, NULL, texels, NULL, SR_SRGB}};
     struct sr_error error = {0};
     EXPECT(sr_light_emission_prepare(&e, 2, &scenery_arena, &error) == SR_OK);
     EXPECT(e.picture != NULL);
@@ -155,9 +159,11 @@ static void expect_illuminance_of_picture(const sr_vec3 P[4], sr_vec3 from)
     for (int i = 0; i < nodes; ++i)
         for (int j = 0; j < nodes; ++j) {
             struct sr_point there;
-            sr_shape_bilinearmesh.point(patch, 0, (sr_vec2){((float)i + 0.5f) / nodes, ((float)j + 0.5f) / nodes}, &there);
+            sr_shape_bilinearmesh.point(patch, 0, (sr_vec2){((float)i + 0.5f) / nodes, ((float)j + 0.5f) / nodes},
+                                        &there);
             sr_vec3 d = sr_sub(from, there.p), wi = sr_normalize(d);
-            double G = (double)sr_length(sr_cross(there.dpdu, there.dpdv)) * fabs((double)sr_dot(wi, there.n)) * fmax(0, -(double)wi.z) / (double)sr_length2(d);
+            double G = (double)sr_length(sr_cross(there.dpdu, there.dpdv)) * fabs((double)sr_dot(wi, there.n)) *
+                       fmax(0, -(double)wi.z) / (double)sr_length2(d);
             E += G * (double)sr_light_area.Le(light.self, &there, wi, &w)[3] / ((double)nodes * nodes);
         }
     struct sr_tally drawn = {0}, by_shape = {0};
@@ -212,7 +218,8 @@ TEST(density_of_a_picture_is_that_of_its_draws)
         EXPECT(m->shape.model->intersect(m->shape.self, m->primitive, x.p, s.wi, 0, INFINITY, &t, &hit));
         struct sr_point there;
         m->shape.model->point(m->shape.self, m->primitive, hit, &there);
-        bool is_near_edge = fabsf(fmodf(2 * hit.x, 1) - 0.5f) > 0.499f || fabsf(fmodf(2 * hit.y, 1) - 0.5f) > 0.499f; // of a cell
+        bool is_near_edge =
+            fabsf(fmodf(2 * hit.x, 1) - 0.5f) > 0.499f || fabsf(fmodf(2 * hit.y, 1) - 0.5f) > 0.499f; // of a cell
         if (!is_near_edge)
             EXPECT_RELATIVE(sr_light_density(light, &x, s.wi, &there), (double)s.pdf, 1e-3);
         ++n;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Triangles, parallelograms and spheres as the room of lights draws them itself where they look small: against the closed
- * forms of their solid angle and irradiance, and against their own densities.
+/* Triangles, parallelograms and spheres as the room of lights draws them itself where they look small: against the
+ * closed forms of their solid angle and irradiance, and against their own densities.
  *
  *     polygon (J. H. Lambert 1760):  E = L / 2 SUM over edges  angle(v_i, v_i+1) n . unit(v_i x v_i+1)       [lx]
  *     sphere straight ahead:         E = pi L (R / d)^2,   Omega = 2 pi (1 - sqrt(1 - (R / d)^2))            [sr] */
@@ -18,7 +18,8 @@ static double polygon_E(const sr_vec3 *v, int n, sr_vec3 p, sr_vec3 normal)
     return fabs(E);
 }
 
-/* What draws from a light say: mean of 1 / pdf (its solid angle) and of cos / pdf, and that pdf agrees with each draw. */
+/* What draws from a light say: mean of 1 / pdf (its solid angle) and of cos / pdf, and that pdf agrees with each draw.
+ */
 static void draw(struct sr_light light, const struct sr_point *x, struct sr_tally *solid_angle, struct sr_tally *E)
 {
     struct sr_wavelengths w = scenery_wavelengths(20);
@@ -62,8 +63,9 @@ static double radiance(const struct sr_light_emission *e)
     return (double)sr_spd_eval(&e->emitted, w.lambda)[3];
 }
 
-static const struct sr_shape_placement in_place = {.object_to_world = {.m = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}},
-                                                                       .inverse = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}};
+static const struct sr_shape_placement in_place = {
+    .object_to_world = {.m = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}},
+                        .inverse = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}};
 
 TEST(a_small_triangle_and_a_joined_parallelogram_give_lamberts_illuminance)
 {
@@ -109,7 +111,8 @@ TEST(only_halves_of_parallelograms_are_joined)
     struct sr_shape_mesh crooked = {.indices = {indices, 6}, .P = {P, 4}};
     EXPECT(!sr_shape_join_triangles(&crooked, &scenery_arena, &joined, &error));
     P[3].y = 1;
-    struct sr_shape_mesh square = crooked, turned = {.indices = {other_way, 6}, .P = {P, 4}}, single = {.indices = {indices, 3}, .P = {P, 4}};
+    struct sr_shape_mesh square = crooked, turned = {.indices = {other_way, 6}, .P = {P, 4}},
+                         single = {.indices = {indices, 3}, .P = {P, 4}};
     EXPECT(sr_shape_join_triangles(&square, &scenery_arena, &joined, &error));
     EXPECT_RELATIVE(sr_shape_bilinearmesh.area(&joined, 0), 1, 1e-6);
     EXPECT(!sr_shape_join_triangles(&turned, &scenery_arena, &joined, &error)); // outside is not on one side

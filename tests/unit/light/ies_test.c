@@ -3,7 +3,8 @@
 #include "scenery.h"
 #include "unit/measured/luminaires.h"
 
-static struct sr_light lamp(intensity_of *I, enum sr_photometry_symmetry symmetry, uint32_t c_steps, const struct sr_transform *place, float scale, float power)
+static struct sr_light lamp(intensity_of *I, enum sr_photometry_symmetry symmetry, uint32_t c_steps,
+                            const struct sr_transform *place, float scale, float power)
 {
     const struct sr_light_model *model = sr_light_model_find("ies");
     struct sr_photometry p = luminaire_make(&scenery_arena, symmetry, I, c_steps, 360);
@@ -40,13 +41,15 @@ TEST(hundred_lumens_of_a_file_give_the_illuminance_of_theory)
 
 TEST(asymmetric_lamps_follow_their_transform)
 {
-    struct sr_transform there = sr_transform_translate((sr_vec3){1, 2, 3}), turned = sr_transform_rotate(40, (sr_vec3){1, -2, 0.5f});
+    struct sr_transform there = sr_transform_translate((sr_vec3){1, 2, 3}),
+                        turned = sr_transform_rotate(40, (sr_vec3){1, -2, 0.5f});
     struct sr_transform turn = sr_transform_multiply(&there, &turned);
     for (uint32_t steps = 72; steps < 74; ++steps) { // the second as EULUMDAT
         struct sr_light light = lamp(lopsided, SR_PHOTOMETRY_ALL_PLANES, steps, &turn, 1, NAN);
         EXPECT_RELATIVE(light.model->power(light.self), 200 * 3.14159265358979, 2e-3);
         for (int k = 0; k < 40; ++k) {
-            double c = fmod(k * 137.5, 360), gamma = 2 + k * 4.3, g = gamma * RADIANS, a = c * RADIANS, r = 0.5 + 0.1 * k;
+            double c = fmod(k * 137.5, 360), gamma = 2 + k * 4.3, g = gamma * RADIANS, a = c * RADIANS,
+                   r = 0.5 + 0.1 * k;
             sr_vec3 d = {(float)(sin(g) * cos(a)), (float)(sin(g) * sin(a)), (float)-cos(g)};
             struct sr_light_sample s;
             double E = scenery_illuminance(light, sr_transform_point(&turn, sr_scale((float)r, d)), &s);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Lights whose intensity is an image: against their definition direction by direction, flux by quadrature, and maps made square. */
+/* Lights whose intensity is an image: against their definition direction by direction, flux by quadrature, and maps
+ * made square. */
 #include "scenery.h"
 
 #define SIDE 12u
@@ -10,19 +11,22 @@ static const float *texels(int channels, uint32_t w, uint32_t h)
     static float t[3 * 4096];
     for (uint32_t i = 0; i < w * h; ++i)
         for (int k = 0; k < channels; ++k)
-            t[(uint32_t)channels * i + (uint32_t)k] = i % 7 == 0 ? 0 : 0.1f + 0.8f * (float)((i * (uint32_t)(k + 3)) % 17) / 17 + (i == 40 ? 9 : 0);
+            t[(uint32_t)channels * i + (uint32_t)k] =
+                i % 7 == 0 ? 0 : 0.1f + 0.8f * (float)((i * (uint32_t)(k + 3)) % 17) / 17 + (i == 40 ? 9 : 0);
     return t;
 }
 
 static struct sr_transform placed(bool is_rotation)
 {
-    struct sr_transform turn = sr_transform_rotate(70, (sr_vec3){1, 2, 3}), move = sr_transform_translate((sr_vec3){1, -2, 0.5f});
+    struct sr_transform turn = sr_transform_rotate(70, (sr_vec3){1, 2, 3}),
+                        move = sr_transform_translate((sr_vec3){1, -2, 0.5f});
     struct sr_transform other = is_rotation ? sr_transform_identity() : sr_transform_scale((sr_vec3){1.5f, -0.5f, 1});
     struct sr_transform both = sr_transform_multiply(&turn, &other);
     return sr_transform_multiply(&move, &both);
 }
 
-static struct sr_light light_of(const char *name, struct sr_texels t, struct sr_transform place, float scale, float power)
+static struct sr_light light_of(const char *name, struct sr_texels t, struct sr_transform place, float scale,
+                                float power)
 {
     const struct sr_light_model *m = sr_light_model_find(name);
     struct sr_light_common *self = scenery_new(m);
@@ -61,9 +65,11 @@ TEST(a_goniometric_light_is_its_map_with_the_pole_along_y)
         for (int i = 0; i < 100; ++i) {
             sr_vec2 uv = {sr_rng_float(&rng), sr_rng_float(&rng)};
             size_t at = ((size_t)(uv.y * SIDE) * SIDE + (size_t)(uv.x * SIDE)) * 3;
-            sr_vec3 d = sr_equal_area_square_to_sphere(uv), out = sr_normalize(sr_transform_vector(&place, (sr_vec3){d.x, d.z, d.y}));
+            sr_vec3 d = sr_equal_area_square_to_sphere(uv),
+                    out = sr_normalize(sr_transform_vector(&place, (sr_vec3){d.x, d.z, d.y}));
             double Y = ((double)t.floats[at] + (double)t.floats[at + 1] + (double)t.floats[at + 2]) / 3;
-            EXPECT_NEAR(intensity(light, sr_transform_point(&place, (sr_vec3){0, 0, 0}), out), 5 * Y, 1e-3 * 5 * Y + 1e-9);
+            EXPECT_NEAR(intensity(light, sr_transform_point(&place, (sr_vec3){0, 0, 0}), out), 5 * Y,
+                        1e-3 * 5 * Y + 1e-9);
         }
     }
     // power is the flux of the whole light, and what a texel sends is its share
@@ -71,7 +77,8 @@ TEST(a_goniometric_light_is_its_map_with_the_pole_along_y)
     EXPECT_RELATIVE(light.model->power(light.self), 600, 1e-5);
     double flux = 0;
     for (uint32_t i = 0; i < SIDE * SIDE; ++i) {
-        sr_vec3 d = sr_equal_area_square_to_sphere((sr_vec2){((float)(i % SIDE) + 0.5f) / SIDE, ((float)(i / SIDE) + 0.5f) / SIDE});
+        sr_vec3 d = sr_equal_area_square_to_sphere(
+            (sr_vec2){((float)(i % SIDE) + 0.5f) / SIDE, ((float)(i / SIDE) + 0.5f) / SIDE});
         flux += 4 * pi / (SIDE * SIDE) * intensity(light, (sr_vec3){0, 0, 0}, (sr_vec3){d.x, d.z, d.y});
     }
     EXPECT_RELATIVE(flux, 600, 1e-3);
@@ -101,7 +108,8 @@ TEST(a_projection_throws_its_image_upright_along_z)
             if (i % 3 == 0)
                 EXPECT_NEAR(intensity(light, p, d), 4 * Y, 3e-3 * 4 * Y + 1e-9);
             for (int s = 0; s < 64; ++s) { // INTEGRAL cos^3 dA over the texel
-                double sx = (2 * (i % w + (s % 8 + 0.5) / 8) / w - 1) * hx, sy = (1 - 2 * (i / w + (s / 8 + 0.5) / 8) / h) * hy;
+                double sx = (2 * (i % w + (s % 8 + 0.5) / 8) / w - 1) * hx,
+                       sy = (1 - 2 * (i / w + (s / 8 + 0.5) / 8) / h) * hy;
                 flux += 4 * Y * pow(1 + sx * sx + sy * sy, -1.5) * 4 * hx * hy / (w * h) / 64;
             }
         }
@@ -126,7 +134,8 @@ TEST(images_that_lights_cannot_use_are_refused)
         for (int i = 0; i < 4; ++i) {
             struct sr_error error = {0};
             struct sr_light_common *self = scenery_new(m);
-            self->texels = (struct sr_texels){i == 1 && k == 0 ? 3 : 2, 2, i == 1 && k == 1 ? 1 : 3, NULL, bad, NULL, SR_SRGB};
+            self->texels =
+                (struct sr_texels){i == 1 && k == 0 ? 3 : 2, 2, i == 1 && k == 1 ? 1 : 3, NULL, bad, NULL, SR_SRGB};
             scenery_set(m, self, "filename", &(const char *){i == 0 ? NULL : "image.exr"}, sizeof(char *));
             bad[4] = i == 2 ? NAN : 0;
             if (i == 3)
@@ -154,7 +163,8 @@ TEST(a_latitude_longitude_map_keeps_its_directions_and_its_luminance)
     for (int i = 0; i < W * H; ++i)
         for (int c = 0; c < 3; ++c) {
             double theta = pi * (i / W + 0.5) / H, phi = 2 * pi * (i % W + 0.5) / W; // smooth, and a sun of one texel
-            map[3 * i + c] = (float)(1 + 0.5 * sin(theta) * cos(phi - c) + 0.2 * cos(theta)) + (i == 9 * W + 21 ? 500 : 0);
+            map[3 * i + c] =
+                (float)(1 + 0.5 * sin(theta) * cos(phi - c) + 0.2 * cos(theta)) + (i == 9 * W + 21 ? 500 : 0);
             mean += y_of_rgb[c] * (double)map[3 * i + c] * (cos(pi * (i / W) / H) - cos(pi * (i / W + 1) / H)) / 2 / W;
         }
     struct sr_texels t = {W, H, 3, NULL, map, NULL, SR_SRGB};
@@ -164,9 +174,11 @@ TEST(a_latitude_longitude_map_keeps_its_directions_and_its_luminance)
     EXPECT(t.width == t.height && t.width >= 36 && t.channels == 3 && !sr_light_is_latitude_longitude(&t));
     double sum = 0, sun = 0;
     for (uint32_t i = 0; i < t.width * t.height; ++i) {
-        sr_vec3 d = sr_equal_area_square_to_sphere((sr_vec2){((float)(i % t.width) + 0.5f) / (float)t.width, ((float)(i / t.width) + 0.5f) / (float)t.height});
+        sr_vec3 d = sr_equal_area_square_to_sphere(
+            (sr_vec2){((float)(i % t.width) + 0.5f) / (float)t.width, ((float)(i / t.width) + 0.5f) / (float)t.height});
         double theta = acos((double)d.z), phi = atan2((double)d.y, (double)d.x);
-        double to_sun = acos(sin(theta) * sin(pi * 9.5 / H) * cos(phi - 2 * pi * 21.5 / W) + cos(theta) * cos(pi * 9.5 / H));
+        double to_sun =
+            acos(sin(theta) * sin(pi * 9.5 / H) * cos(phi - 2 * pi * 21.5 / W) + cos(theta) * cos(pi * 9.5 / H));
         for (int c = 0; c < 3; ++c) {
             double v = (double)t.floats[3 * i + (uint32_t)c];
             sum += y_of_rgb[c] * v;

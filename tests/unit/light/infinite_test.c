@@ -16,7 +16,9 @@ static const float *texels(void)
     static float t[SIZE * SIZE * 3];
     for (uint32_t i = 0; i < SIZE * SIZE; ++i)
         for (uint32_t k = 0; k < 3; ++k)
-            t[3 * i + k] = i % SIZE < 3 && i / SIZE < 3 ? 0 : 0.2f + 0.5f * (float)((i * (k + 3)) % 17) / 17 + (i == 5 * SIZE + 9 ? 60 : 0);
+            t[3 * i + k] = i % SIZE < 3 && i / SIZE < 3
+                               ? 0
+                               : 0.2f + 0.5f * (float)((i * (k + 3)) % 17) / 17 + (i == 5 * SIZE + 9 ? 60 : 0);
     return t;
 }
 
@@ -29,14 +31,16 @@ static struct sr_light image_light(const struct sr_transform *t, float scale)
     return scenery_finish(sky(), self);
 }
 
-/* E = pi L (1 + cos beta) / 2 of a hemisphere seen by a receiver tilted by beta: here a full uniform sky, cut by the test */
+/* E = pi L (1 + cos beta) / 2 of a hemisphere seen by a receiver tilted by beta: here a full uniform sky, cut by the
+ * test */
 TEST(a_uniform_dome_gives_pi_L_times_the_share_that_a_tilted_receiver_sees)
 {
     void *self = scenery_new(sky());
     struct sr_light light = scenery_finish(sky(), self);
     double L = scenery_luminance(light, NULL, (sr_vec3){0.6f, 0, 0.8f});
     EXPECT_RELATIVE(L, 1, 1e-5);
-    const double expected[][2] = {{0, 3.14159265359}, {30, 2.93114584997}, {60, 2.35619449019}, {90, 1.57079632679}, {120, 0.785398163397}};
+    const double expected[][2] = {
+        {0, 3.14159265359}, {30, 2.93114584997}, {60, 2.35619449019}, {90, 1.57079632679}, {120, 0.785398163397}};
     struct sr_wavelengths w = scenery_wavelengths(25);
     for (int i = 0; i < 5; ++i) {
         double beta = expected[i][0] * pi / 180, E = 0;
@@ -47,7 +51,9 @@ TEST(a_uniform_dome_gives_pi_L_times_the_share_that_a_tilted_receiver_sees)
                 sr_vec3 wi = {(float)(r * cos(phi)), (float)(r * sin(phi)), (float)z};
                 double cosine = sin(beta) * (double)wi.x + cos(beta) * (double)wi.z;
                 if (cosine > 0)
-                    E += 2 * pi / ((double)n * n) * cosine * L * (double)(light.model->Le(light.self, NULL, sr_neg(wi), &w)[0] / light.model->Le(light.self, NULL, (sr_vec3){0, 0, 1}, &w)[0]);
+                    E += 2 * pi / ((double)n * n) * cosine * L *
+                         (double)(light.model->Le(light.self, NULL, sr_neg(wi), &w)[0] /
+                                  light.model->Le(light.self, NULL, (sr_vec3){0, 0, 1}, &w)[0]);
             }
         EXPECT_RELATIVE(E, expected[i][1], 1e-3);
     }
@@ -90,7 +96,8 @@ TEST(an_image_scaled_to_an_illuminance_gives_it)
     double E = 0;
     uint32_t n = 4 * SIZE;
     for (uint32_t i = 0; i < n * n; ++i) {
-        sr_vec3 wi = sr_equal_area_square_to_sphere((sr_vec2){((float)(i % n) + 0.5f) / (float)n, ((float)(i / n) + 0.5f) / (float)n});
+        sr_vec3 wi = sr_equal_area_square_to_sphere(
+            (sr_vec2){((float)(i % n) + 0.5f) / (float)n, ((float)(i / n) + 0.5f) / (float)n});
         if (wi.z > 0)
             E += 4 * pi / ((double)n * n) * (double)wi.z * scenery_luminance(light, NULL, sr_neg(wi));
     }
@@ -155,7 +162,8 @@ TEST(samples_of_an_image_agree_with_its_density_and_Le)
             EXPECT_NEAR(sr_length(s.wi), 1, 1e-5);
             EXPECT(isinf(s.distance) && !s.is_delta && s.pdf > 0);
             double pdf = (double)light.model->pdf(light.self, &x, s.wi, NULL);
-            bool is_same = fabs(pdf / (double)s.pdf - 1) < 1e-3 && fabsf(light.model->Le(light.self, NULL, sr_neg(s.wi), &w)[2] / s.L[2] - 1) < 1e-4f;
+            bool is_same = fabs(pdf / (double)s.pdf - 1) < 1e-3 &&
+                           fabsf(light.model->Le(light.self, NULL, sr_neg(s.wi), &w)[2] / s.L[2] - 1) < 1e-4f;
             differs += !is_same; // rounding may lead to the next texel
         }
         EXPECT(differs < 20);
@@ -180,14 +188,16 @@ TEST(the_sampler_of_an_image_follows_its_density)
                 continue;
             }
             float phi = atan2f(s.wi.y, s.wi.x);
-            int a = (int)fminf((s.wi.z + 1) / 2 * Z, Z - 1), b = (int)fminf((phi < 0 ? phi + 2 * SR_PI : phi) / (2 * SR_PI) * PHI, PHI - 1);
+            int a = (int)fminf((s.wi.z + 1) / 2 * Z, Z - 1),
+                b = (int)fminf((phi < 0 ? phi + 2 * SR_PI : phi) / (2 * SR_PI) * PHI, PHI - 1);
             observed[a * PHI + b] += 1;
         }
         for (int i = 0; i < Z * FINE; ++i)
             for (int j = 0; j < PHI * FINE; ++j) {
                 double z = 2 * (i + 0.5) / (Z * FINE) - 1, phi = 2 * pi * (j + 0.5) / (PHI * FINE), r = sqrt(1 - z * z);
                 sr_vec3 wi = {(float)(r * cos(phi)), (float)(r * sin(phi)), (float)z};
-                double p = (double)light.model->pdf(light.self, &x, wi, NULL) * DRAWS * 4 * pi / ((double)Z * FINE * PHI * FINE);
+                double p = (double)light.model->pdf(light.self, &x, wi, NULL) * DRAWS * 4 * pi /
+                           ((double)Z * FINE * PHI * FINE);
                 expected[i / FINE * PHI + j / FINE] += p;
                 all += p;
             }
@@ -224,7 +234,8 @@ TEST(image_and_surface_together_find_all_the_light)
             sr_vec3 wi = sr_warp_cosine_hemisphere((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)});
             float pdf = sr_warp_cosine_hemisphere_pdf(wi.z);
             if (pdf > 0)
-                sum += (double)(light.model->Le(light.self, NULL, sr_neg(wi), &w)[2] * wi.z / (pdf + light.model->pdf(light.self, &x, wi, NULL)));
+                sum += (double)(light.model->Le(light.self, NULL, sr_neg(wi), &w)[2] * wi.z /
+                                (pdf + light.model->pdf(light.self, &x, wi, NULL)));
             sr_tally_add(&tally, sum);
         }
         printf("    image sky: E %.6g, estimate %.6g +- %.2g\n", E, tally.mean, sr_tally_standard_error(&tally));

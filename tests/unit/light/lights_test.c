@@ -23,8 +23,10 @@ static struct scenery_quad random_quad(struct sr_rng *rng, float room, float siz
     return q;
 }
 
-/* n lights of all finite kinds, a bunch that only their seed decides; aligned: all shine toward about +z, from all heights */
-static struct sr_light *oriented_lights(uint32_t n, uint64_t seed, float room, float size, bool only_quads, bool aligned)
+/* n lights of all finite kinds, a bunch that only their seed decides; aligned: all shine toward about +z, from all
+ * heights */
+static struct sr_light *oriented_lights(uint32_t n, uint64_t seed, float room, float size, bool only_quads,
+                                        bool aligned)
 {
     struct sr_rng rng = sr_rng_seed(seed, 77);
     struct sr_light *lights = sr_arena_alloc(&scenery_arena, n * sizeof *lights);
@@ -92,7 +94,8 @@ TEST(probabilities_add_up_to_1_less_the_walks_that_end_in_the_dark)
     const uint32_t counts[] = {1, 2, 3, 8, 9, 20, 65, 300, 2000};
     for (int choice = SR_LIGHTS_BVH; choice <= SR_LIGHTS_UNIFORM; ++choice)
         for (int k = 0; k < 9; ++k) {
-            struct sr_lights l = build(mixed_lights(counts[k], (uint64_t)k, 1, 0.1f, false), counts[k], (enum sr_light_choice)choice);
+            struct sr_lights l =
+                build(mixed_lights(counts[k], (uint64_t)k, 1, 0.1f, false), counts[k], (enum sr_light_choice)choice);
             struct sr_rng rng = sr_rng_seed(8, (uint64_t)k);
             for (int i = 0; i < 10; ++i) {
                 struct sr_point x = random_receiver(&rng, i < 5 ? 1 : 5, i % 2);
@@ -103,7 +106,8 @@ TEST(probabilities_add_up_to_1_less_the_walks_that_end_in_the_dark)
                 for (int d = 0; d < draws; ++d) {
                     uint32_t index;
                     float pmf;
-                    dark += !sr_lights_pick(&l, &x, ((float)d + sr_rng_float(&rng)) / (float)draws * SR_ONE_MINUS_EPSILON, &index, &pmf);
+                    dark += !sr_lights_pick(
+                        &l, &x, ((float)d + sr_rng_float(&rng)) / (float)draws * SR_ONE_MINUS_EPSILON, &index, &pmf);
                 }
                 EXPECT(sum < 1 + 1e-4);
                 EXPECT_NEAR(sum, 1 - (double)dark / draws, 0.02);
@@ -123,11 +127,13 @@ TEST(lights_are_picked_in_proportion_to_their_area)
         struct sr_point x = {.p = {1, 2, 3}};
         double total = 0, sum = 0;
         for (uint32_t i = 0; i < n; ++i) {
-            total += lights[i].model == &sr_light_area ? (double)((const struct sr_light_area *)lights[i].self)->area : 0;
+            total +=
+                lights[i].model == &sr_light_area ? (double)((const struct sr_light_area *)lights[i].self)->area : 0;
             sum += (double)sr_lights_pmf_by_area(&l, i);
         }
         enum { DRAWS = 100000 };
-        double *seen = sr_arena_alloc(&scenery_arena, n * sizeof *seen), *expected = sr_arena_alloc(&scenery_arena, n * sizeof *expected);
+        double *seen = sr_arena_alloc(&scenery_arena, n * sizeof *seen),
+               *expected = sr_arena_alloc(&scenery_arena, n * sizeof *expected);
         struct sr_rng rng = sr_rng_seed(11, (uint64_t)k);
         for (int d = 0; d < DRAWS; ++d) {
             uint32_t index;
@@ -172,8 +178,8 @@ TEST(probabilities_of_points_add_up_to_1)
     }
 }
 
-/* Nothing in the tree has a length of its own: the same lamps, receivers and numbers in scenes of 2 mm and 2000 km. Some receivers are within
- * lamps, some lamps are small. */
+/* Nothing in the tree has a length of its own: the same lamps, receivers and numbers in scenes of 2 mm and 2000 km.
+ * Some receivers are within lamps, some lamps are small. */
 TEST(picks_do_not_depend_on_the_size_of_the_scene)
 {
     enum { N = 200, PICKS = 4000 };
@@ -207,8 +213,8 @@ TEST(picks_do_not_depend_on_the_size_of_the_scene)
                 first_pmf[i] = pmf;
             }
             if (index != first[i] || pmf != first_pmf[i]) // to the last bit
-                test_fail(__FILE__, __LINE__, "scaled by 2^%d, receiver %u: lamp %u with %.9g, expected %u with %.9g", exponents[k], i, index, (double)pmf, first[i],
-                          (double)first_pmf[i]);
+                test_fail(__FILE__, __LINE__, "scaled by 2^%d, receiver %u: lamp %u with %.9g, expected %u with %.9g",
+                          exponents[k], i, index, (double)pmf, first[i], (double)first_pmf[i]);
         }
     }
 }
@@ -267,7 +273,9 @@ TEST(irradiance_of_1000_emitters_is_the_sum_of_each)
             double E = 0;
             for (uint32_t i = 0; i < EMITTERS; ++i) // small: a grid over each is as good as the integral
                 for (int j = 0; j < 16; ++j)
-                    E += contribution(lights[i], &x, (sr_vec2){((float)(j % 4) + 0.5f) / 4, ((float)(j / 4) + 0.5f) / 4}, &w) / 16;
+                    E += contribution(lights[i], &x,
+                                      (sr_vec2){((float)(j % 4) + 0.5f) / 4, ((float)(j / 4) + 0.5f) / 4}, &w) /
+                         16;
             struct sr_tally tally = {0};
             for (int i = 0; i < 100000; ++i) {
                 uint32_t index;
@@ -276,13 +284,15 @@ TEST(irradiance_of_1000_emitters_is_the_sum_of_each)
                 sr_vec2 u = {sr_rng_float(&rng), sr_rng_float(&rng)};
                 sr_tally_add(&tally, is_picked ? contribution(lights[index], &x, u, &w) / (double)pmf : 0);
             }
-            printf("    1000 emitters, choice %d: relative deviation of one draw %.3g\n", choice, sqrt(sr_tally_variance(&tally)) / E);
+            printf("    1000 emitters, choice %d: relative deviation of one draw %.3g\n", choice,
+                   sqrt(sr_tally_variance(&tally)) / E);
             EXPECT_MEAN(tally, E);
         }
     }
 }
 
-/* any light whose draw brings something has a chance; receivers lie also close to emitters and between ones that are alike */
+/* any light whose draw brings something has a chance; receivers lie also close to emitters and between ones that are
+ * alike */
 TEST(no_light_that_contributes_is_left_out)
 {
     struct sr_wavelengths w = scenery_wavelengths(25);
@@ -291,7 +301,8 @@ TEST(no_light_that_contributes_is_left_out)
         struct sr_rng rng = sr_rng_seed(11, (uint64_t)k);
         uint32_t n = 1 + sr_rng_u32(&rng) % (k % 3 == 0 ? 300 : 30);
         float room = powf(10, uniform(&rng, -2, 4)), size = room * powf(10, uniform(&rng, -4, 0));
-        const struct sr_light *lights = oriented_lights(n, (uint64_t)k + 100, room, fmaxf(size, 0.02f), k % 2, k % 4 >= 2);
+        const struct sr_light *lights =
+            oriented_lights(n, (uint64_t)k + 100, room, fmaxf(size, 0.02f), k % 2, k % 4 >= 2);
         struct sr_lights l = build(lights, n, SR_LIGHTS_BVH);
         for (int i = 0; i < 60; ++i) {
             struct sr_point x = random_receiver(&rng, i % 3 == 0 ? 5 * room : room, i % 4 != 0);
@@ -307,8 +318,9 @@ TEST(no_light_that_contributes_is_left_out)
                     continue;
                 ++contributing;
                 if (!(sr_lights_pmf(&l, &x, j) > 0))
-                    test_fail(__FILE__, __LINE__, "set %d, %u lights, room %g m, size %g m: light %u (%s) is left out at distance %g m", k, n,
-                              (double)room, (double)size, j, lights[j].model->name, (double)s.distance);
+                    test_fail(__FILE__, __LINE__,
+                              "set %d, %u lights, room %g m, size %g m: light %u (%s) is left out at distance %g m", k,
+                              n, (double)room, (double)size, j, lights[j].model->name, (double)s.distance);
             }
         }
     }
@@ -376,7 +388,8 @@ TEST(trees_are_built_and_walked_fast)
         EXPECT(sr_light_emission_prepare(&e, 1, &arena, &error) == SR_OK);
         for (uint32_t i = 0; i < n; ++i) {
             quads[i] = random_quad(&rng, 10, 0.02f);
-            areas[i] = (struct sr_light_area){.shape = {&scenery_quads, quads}, .primitive = i, .emission = &e, .area = scenery_quad_area(quads, i)};
+            areas[i] = (struct sr_light_area){
+                .shape = {&scenery_quads, quads}, .primitive = i, .emission = &e, .area = scenery_quad_area(quads, i)};
             lights[i] = (struct sr_light){&sr_light_area, &areas[i]};
         }
         struct sr_lights l;
@@ -391,14 +404,17 @@ TEST(trees_are_built_and_walked_fast)
         float sum = 0, pmf = 0;
         t0 = sr_clock_s();
         for (int i = 0; i < WALKS; ++i)
-            sum += sr_lights_pick(&l, &x[i % PLACES], (float)(i * 7919 % WALKS) / (float)WALKS, &found[i % PLACES], &pmf) ? pmf : 0;
+            sum +=
+                sr_lights_pick(&l, &x[i % PLACES], (float)(i * 7919 % WALKS) / (float)WALKS, &found[i % PLACES], &pmf)
+                    ? pmf
+                    : 0;
         double pick_ns = (sr_clock_s() - t0) / WALKS * 1e9;
         t0 = sr_clock_s();
         for (int i = 0; i < WALKS; ++i)
             sum += sr_lights_pmf(&l, &x[i % PLACES], found[i % PLACES]);
         double pmf_ns = (sr_clock_s() - t0) / WALKS * 1e9;
-        printf("    %7u lights: pick %.0f ns, pmf %.0f ns, built in %.3f s, %.1f B a light (%g)\n", n, pick_ns, pmf_ns, build_s,
-               (double)arena.total / n, (double)sum);
+        printf("    %7u lights: pick %.0f ns, pmf %.0f ns, built in %.3f s, %.1f B a light (%g)\n", n, pick_ns, pmf_ns,
+               build_s, (double)arena.total / n, (double)sum);
         if (n == 1000000)
             EXPECT(build_s < 20 && (double)arena.total / n < 64);
         sr_free(quads);

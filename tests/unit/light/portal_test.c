@@ -27,7 +27,9 @@ static const float *sky(void)
     return t;
 }
 
-static const struct sr_point receivers[] = {{.p = {0, 0, 0}, .n = {0, 0, 1}}, {.p = {1.5f, 0.8f, 1.8f}, .n = {0, 0.6f, 0.8f}}, {.p = {-6, 3, 1}, .n = {1, 0, 0}}};
+static const struct sr_point receivers[] = {{.p = {0, 0, 0}, .n = {0, 0, 1}},
+                                            {.p = {1.5f, 0.8f, 1.8f}, .n = {0, 0.6f, 0.8f}},
+                                            {.p = {-6, 3, 1}, .n = {1, 0, 0}}};
 
 static double value_of(sr_spectrum L)
 {
@@ -44,7 +46,8 @@ static double irradiance(struct sr_light light, const struct sr_point *x, const 
         sr_vec3 p = {0.5f + 2 * a, 0.2f + 1.2f * b, 2}, d = sr_sub(p, x->p), wi = sr_normalize(d);
         double cosine = (double)sr_dot(x->n, wi);
         if (cosine > 0)
-            sum += cosine * (double)wi.z / (double)sr_length2(d) * 2.4 / ((double)N * N) * value_of(sr_light_escaping(light, x->p, wi, w));
+            sum += cosine * (double)wi.z / (double)sr_length2(d) * 2.4 / ((double)N * N) *
+                   value_of(sr_light_escaping(light, x->p, wi, w));
     }
     return sum;
 }
@@ -110,8 +113,11 @@ TEST(directions_through_a_portal_come_as_their_density_says)
         }
         for (int i = 0; i < CELLS * CELLS * FINE * FINE; ++i) {
             int ia = i % (CELLS * FINE), ib = i / (CELLS * FINE);
-            sr_vec3 p = {0.5f + 2 * ((float)ia + 0.5f) / (CELLS * FINE), 0.2f + 1.2f * ((float)ib + 0.5f) / (CELLS * FINE), 2}, wi = sr_normalize(p);
-            double density = (double)light.model->pdf(light.self, x, wi, NULL) * (double)wi.z / (double)sr_length2(p) * 2.4 / (CELLS * CELLS * FINE * FINE);
+            sr_vec3 p = {0.5f + 2 * ((float)ia + 0.5f) / (CELLS * FINE),
+                         0.2f + 1.2f * ((float)ib + 0.5f) / (CELLS * FINE), 2},
+                    wi = sr_normalize(p);
+            double density = (double)light.model->pdf(light.self, x, wi, NULL) * (double)wi.z / (double)sr_length2(p) *
+                             2.4 / (CELLS * CELLS * FINE * FINE);
             sum += density;
             if (!sr_spectrum_is_black(sr_light_escaping(light, x->p, wi, &w)))
                 expected[ib / FINE * CELLS + ia / FINE] += density * DRAWS;
@@ -137,7 +143,8 @@ TEST(what_enters_through_a_portal_is_its_power)
             enum { N = 300 };
             known = 0;
             for (int i = 0; i < N * N; ++i) {
-                sr_vec3 d = sr_equal_area_square_to_sphere((sr_vec2){((float)(i % N) + .5f) / N, ((float)(i / N) + .5f) / N});
+                sr_vec3 d =
+                    sr_equal_area_square_to_sphere((sr_vec2){((float)(i % N) + .5f) / N, ((float)(i / N) + .5f) / N});
                 if (d.z > 0)
                     known += 2.4 * 4 * pi / ((double)N * N) * (double)d.z * scenery_luminance(light, NULL, sr_neg(d));
             }
@@ -146,9 +153,11 @@ TEST(what_enters_through_a_portal_is_its_power)
         struct sr_rng rng = sr_rng_seed(3, (uint64_t)image);
         struct sr_tally t = {0};
         for (int i = 0; i < 200000; ++i) {
-            struct sr_wavelengths w = sr_wavelengths_sample((struct sr_lambda_range){SR_LAMBDA_MIN, SR_LAMBDA_MAX}, sr_rng_float(&rng));
+            struct sr_wavelengths w =
+                sr_wavelengths_sample((struct sr_lambda_range){SR_LAMBDA_MIN, SR_LAMBDA_MAX}, sr_rng_float(&rng));
             struct sr_light_ray r;
-            if (!light.model->emit(light.self, (sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)}, (sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)}, &w, &r)) {
+            if (!light.model->emit(light.self, (sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)},
+                                   (sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)}, &w, &r)) {
                 sr_tally_add(&t, 0);
                 continue;
             }
@@ -158,7 +167,8 @@ TEST(what_enters_through_a_portal_is_its_power)
             EXPECT(pdf_area == r.pdf_area && pdf_direction == r.pdf_direction);
             // what goes on inside sees it the same way
             if (i % 100 == 0)
-                EXPECT_NEAR(value_of(sr_light_escaping(light, sr_add(r.from.p, r.w), sr_neg(r.w), &w)), value_of(r.L), 1e-4 * value_of(r.L));
+                EXPECT_NEAR(value_of(sr_light_escaping(light, sr_add(r.from.p, r.w), sr_neg(r.w), &w)), value_of(r.L),
+                            1e-4 * value_of(r.L));
             sr_tally_add(&t, (double)sr_spectrum_to_xyz(r.L, &w).y / ((double)r.pdf_area * (double)r.pdf_direction));
         }
         double se = sr_tally_standard_error(&t);
@@ -169,14 +179,15 @@ TEST(what_enters_through_a_portal_is_its_power)
 
 TEST(portals_that_are_no_rectangles_are_refused)
 {
-    static const sr_vec3 wrong[4][4] = {{{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0.2f, 0}},  // no right angles
-                                        {{0, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 0}},     // crosses itself
-                                        {{0, 0, 0}, {0, 0, 0}, {1, 1, 0}, {1, 1, 0}},     // no area
+    static const sr_vec3 wrong[4][4] = {{{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0.2f, 0}}, // no right angles
+                                        {{0, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1, 0, 0}},    // crosses itself
+                                        {{0, 0, 0}, {0, 0, 0}, {1, 1, 0}, {1, 1, 0}},    // no area
                                         {{0, 0, 0}, {0, 1, 0}, {1, 1, NAN}, {1, 0, 0}}};
     for (int i = 0; i < 5; ++i) {
         struct sr_error error = {0};
         struct sr_light_common *self = scenery_new(&sr_light_portal);
-        scenery_set(&sr_light_portal, self, "portal", &(struct sr_slice){i < 4 ? wrong[i] : corners, i < 4 ? 4 : 3}, sizeof(struct sr_slice));
+        scenery_set(&sr_light_portal, self, "portal", &(struct sr_slice){i < 4 ? wrong[i] : corners, i < 4 ? 4 : 3},
+                    sizeof(struct sr_slice));
         EXPECT(sr_light_portal.prepare(self, &scenery_arena, &error) == SR_ERROR_INPUT && strstr(error.text, "portal"));
     }
 }

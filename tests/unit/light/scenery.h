@@ -23,7 +23,8 @@ static inline void *scenery_new(const struct sr_light_model *model)
     return self;
 }
 
-static inline void scenery_set(const struct sr_light_model *model, void *self, const char *name, const void *value, size_t size)
+static inline void scenery_set(const struct sr_light_model *model, void *self, const char *name, const void *value,
+                               size_t size)
 {
     for (const struct sr_param *p = model->params; p->name; ++p)
         if (strcmp(p->name, name) == 0) {
@@ -34,7 +35,8 @@ static inline void scenery_set(const struct sr_light_model *model, void *self, c
 }
 #define SCENERY_FLOAT(model, self, name, value) scenery_set(model, self, name, &(float){value}, sizeof(float))
 #define SCENERY_POINT(model, self, name, x, y, z) scenery_set(model, self, name, &(sr_vec3){x, y, z}, sizeof(sr_vec3))
-#define SCENERY_SPD(model, self, name, spd) scenery_set(model, self, name, &(struct sr_spd[]){spd}, sizeof(struct sr_spd))
+#define SCENERY_SPD(model, self, name, spd)                                                                            \
+    scenery_set(model, self, name, &(struct sr_spd[]){spd}, sizeof(struct sr_spd))
 
 static inline struct sr_light scenery_finish(const struct sr_light_model *model, void *self)
 {
@@ -65,7 +67,8 @@ static inline double scenery_luminous(sr_spectrum L, const struct sr_wavelengths
         }
     return sum;
 }
-/* Luminous integral of what a light of one possible sample sends to x: illuminance across the direction of the light. */
+/* Luminous integral of what a light of one possible sample sends to x: illuminance across the direction of the light.
+ */
 static inline double scenery_illuminance(struct sr_light light, sr_vec3 p, struct sr_light_sample *s)
 {
     struct sr_point x = {.p = p};
@@ -111,11 +114,14 @@ static inline sr_vec3 scenery_quad_normal(const struct scenery_quad *q)
 {
     return sr_normalize(sr_cross(q->ex, q->ey));
 }
-static inline bool scenery_quad_sample(const void *self, uint32_t i, const struct sr_point *x, sr_vec2 u, struct sr_shape_sample *s)
+static inline bool scenery_quad_sample(const void *self, uint32_t i, const struct sr_point *x, sr_vec2 u,
+                                       struct sr_shape_sample *s)
 {
     const struct scenery_quad *q = (const struct scenery_quad *)self + i;
-    *s = (struct sr_shape_sample){.p = sr_add(sr_add(q->corner, sr_scale(u.x, q->ex)), sr_scale(u.y, q->ey)), .n = scenery_quad_normal(q),
-                                  .uv = u, .pdf = 1 / scenery_quad_area(self, i)};
+    *s = (struct sr_shape_sample){.p = sr_add(sr_add(q->corner, sr_scale(u.x, q->ex)), sr_scale(u.y, q->ey)),
+                                  .n = scenery_quad_normal(q),
+                                  .uv = u,
+                                  .pdf = 1 / scenery_quad_area(self, i)};
     if (!x)
         return true;
     sr_vec3 d = sr_sub(s->p, x->p);
@@ -123,7 +129,8 @@ static inline bool scenery_quad_sample(const void *self, uint32_t i, const struc
     s->pdf *= r2 / cosine;
     return cosine > 0;
 }
-static inline float scenery_quad_pdf(const void *self, uint32_t i, const struct sr_point *x, sr_vec3 wi, const struct sr_point *there)
+static inline float scenery_quad_pdf(const void *self, uint32_t i, const struct sr_point *x, sr_vec3 wi,
+                                     const struct sr_point *there)
 {
     return sr_length2(sr_sub(there->p, x->p)) / (fabsf(sr_dot(there->n, wi)) * scenery_quad_area(self, i));
 }
@@ -133,18 +140,24 @@ static inline void scenery_quad_normals(const void *self, uint32_t i, sr_vec3 *a
     *cos_theta = 1;
 }
 static const struct sr_shape_model scenery_quads __attribute__((unused)) = {
-    .name = "test quads", .bounds = scenery_quad_bounds, .area = scenery_quad_area, .sample = scenery_quad_sample,
-    .pdf = scenery_quad_pdf, .normals = scenery_quad_normals,
+    .name = "test quads",
+    .bounds = scenery_quad_bounds,
+    .area = scenery_quad_area,
+    .sample = scenery_quad_sample,
+    .pdf = scenery_quad_pdf,
+    .normals = scenery_quad_normals,
 };
 
 static inline struct sr_light_emission scenery_emission(void)
 {
     return (struct sr_light_emission){.L = sr_spd_constant(3), .scale = 1, .power = NAN};
 }
-static inline struct sr_light scenery_quad_light(const struct scenery_quad *quads, uint32_t i, const struct sr_light_emission *e)
+static inline struct sr_light scenery_quad_light(const struct scenery_quad *quads, uint32_t i,
+                                                 const struct sr_light_emission *e)
 {
     struct sr_light_area *a = sr_arena_alloc(&scenery_arena, sizeof *a);
-    *a = (struct sr_light_area){.shape = {&scenery_quads, quads}, .primitive = i, .emission = e, .area = scenery_quad_area(quads, i)};
+    *a = (struct sr_light_area){
+        .shape = {&scenery_quads, quads}, .primitive = i, .emission = e, .area = scenery_quad_area(quads, i)};
     return (struct sr_light){&sr_light_area, a};
 }
 

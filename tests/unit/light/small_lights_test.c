@@ -19,7 +19,8 @@ TEST(models_are_found_by_name_and_say_where_their_common_part_is)
         EXPECT(sr_light_model_find(m->name) == m);
         EXPECT(m->size >= sizeof(struct sr_light_common));
         EXPECT_EQUAL_INT(sr_light_transform_offset(m), offsetof(struct sr_light_common, light_to_world));
-        bool has_image = strcmp(m->name, "infinite") == 0 || strcmp(m->name, "goniometric") == 0 || strcmp(m->name, "projection") == 0;
+        bool has_image = strcmp(m->name, "infinite") == 0 || strcmp(m->name, "goniometric") == 0 ||
+                         strcmp(m->name, "projection") == 0;
         EXPECT((sr_light_texels_offset(m) == SIZE_MAX) == !has_image);
         for (const struct sr_param *p = m->params; p->name; ++p)
             EXPECT(p->offset >= sizeof(struct sr_light_common) && p->offset < m->size);
@@ -66,7 +67,8 @@ TEST(rgb_white_has_the_brightness_of_scale_and_grey_half_of_it)
         SCENERY_SPD(model("point"), self, "I", sr_spd_from_rgb_illuminant(SR_SRGB, (struct sr_rgb){v, v, v}));
         SCENERY_FLOAT(model("point"), self, "scale", 40);
         struct sr_light_sample s;
-        EXPECT_RELATIVE(scenery_illuminance(scenery_finish(model("point"), self), (sr_vec3){2, 0, 0}, &s), (double)v * 10, 2e-3);
+        EXPECT_RELATIVE(scenery_illuminance(scenery_finish(model("point"), self), (sr_vec3){2, 0, 0}, &s),
+                        (double)v * 10, 2e-3);
     }
 }
 
@@ -89,7 +91,8 @@ TEST(emission_without_luminance_is_refused_and_black_is_black)
     void *self = scenery_new(model("point"));
     SCENERY_SPD(model("point"), self, "I", invisible);
     sr_status status = model("point")->prepare(self, &scenery_arena, &error);
-    EXPECT(status == SR_ERROR_INPUT || sr_spd_max(&invisible) == 0); // a table of nothing in range may also count as black
+    EXPECT(status == SR_ERROR_INPUT ||
+           sr_spd_max(&invisible) == 0); // a table of nothing in range may also count as black
     self = scenery_new(model("point"));
     SCENERY_SPD(model("point"), self, "I", sr_spd_constant(0));
     struct sr_light light = scenery_finish(model("point"), self);
@@ -138,7 +141,8 @@ TEST(a_spot_of_100_cd_from_20_to_30_deg_gives_61_0355_lm)
         for (int i = 0; i < 40; ++i) {
             struct sr_light_sample s;
             sr_vec3 d = sr_spherical_direction((float)sqrt(1 - x[i] * x[i]), (float)x[i], (float)i);
-            Phi += 2 * pi * w[i] * scenery_illuminance(light, (sr_vec3){1 + d.x, 1 + d.z, 1 + d.y}, &s); // axis +y, r = 1
+            Phi +=
+                2 * pi * w[i] * scenery_illuminance(light, (sr_vec3){1 + d.x, 1 + d.z, 1 + d.y}, &s); // axis +y, r = 1
         }
     }
     EXPECT_RELATIVE(Phi, 61.0354826735, 2e-5);
@@ -153,6 +157,7 @@ TEST(a_spot_with_power_gives_off_that_power)
     EXPECT_RELATIVE(light.model->power(light.self), 500, 1e-5);
     double c25 = cos(25 * pi / 180), c30 = cos(30 * pi / 180);
     struct sr_light_sample s;
-    EXPECT_RELATIVE(scenery_illuminance(light, (sr_vec3){0, 0, 2}, &s), 500 / (2 * pi * ((1 - c25) + (c25 - c30) / 2)) / 4, 1e-5);
+    EXPECT_RELATIVE(scenery_illuminance(light, (sr_vec3){0, 0, 2}, &s),
+                    500 / (2 * pi * ((1 - c25) + (c25 - c30) / 2)) / 4, 1e-5);
     EXPECT(scenery_illuminance(light, (sr_vec3){0, 0, -2}, &s) == 0);
 }

@@ -36,7 +36,8 @@ TEST(hair_of_which_nothing_is_told_is_brown)
 {
     struct made m = make("hair");
     struct sr_bsdf_hair h = hair_at(&m, point());
-    expect_absorption(&h, sr_spd_from_rgb_unbounded(SR_SRGB, (struct sr_rgb){1.3f * 0.419f, 1.3f * 0.697f, 1.3f * 1.37f}));
+    expect_absorption(&h,
+                      sr_spd_from_rgb_unbounded(SR_SRGB, (struct sr_rgb){1.3f * 0.419f, 1.3f * 0.697f, 1.3f * 1.37f}));
     EXPECT_NEAR(h.eta, 1.55, 1e-6);
     EXPECT_NEAR(h.beta_m, 0.3, 1e-6);
     EXPECT_NEAR(h.beta_n, 0.3, 1e-6);
@@ -49,7 +50,8 @@ TEST(hair_is_dyed_by_the_first_thing_that_is_told)
     struct made m = make("hair");
     set_float(&m, "pheomelanin", 0.8f); // alone: no eumelanin with it
     struct sr_bsdf_hair h = hair_at(&m, point());
-    expect_absorption(&h, sr_spd_from_rgb_unbounded(SR_SRGB, (struct sr_rgb){0.8f * 0.187f, 0.8f * 0.4f, 0.8f * 1.05f}));
+    expect_absorption(&h,
+                      sr_spd_from_rgb_unbounded(SR_SRGB, (struct sr_rgb){0.8f * 0.187f, 0.8f * 0.4f, 0.8f * 1.05f}));
     EXPECT(!m.model->remark(m.self));
 
     set_spectrum(&m, "color", sr_spd_constant(0.25f));

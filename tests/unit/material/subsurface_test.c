@@ -69,7 +69,8 @@ TEST(a_mix_has_the_body_of_the_part_that_it_chooses)
     set_float(&m, "amount", 0.3f);
     struct sr_material mix = made_material(&m);
     struct sr_bssrdf b;
-    EXPECT(sr_material_has_bssrdf(&mix) && sr_material_has_bssrdf(&second) && !sr_material_has_bssrdf(&first) && !sr_material_has_bssrdf(NULL));
+    EXPECT(sr_material_has_bssrdf(&mix) && sr_material_has_bssrdf(&second) && !sr_material_has_bssrdf(&first) &&
+           !sr_material_has_bssrdf(NULL));
     for (float u = 0; u < 1; u += 0.07f)
         EXPECT(body_of(&mix, u, &b) == (shade(&mix, point(), u).bsdf.model == &sr_bsdf_dielectric));
     sr_arena_free(&a.arena);

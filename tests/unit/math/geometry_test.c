@@ -147,7 +147,8 @@ TEST(transformed_points_are_never_further_off_than_their_bound)
         struct sr_transform t = random_transform();
         double p[3] = {(double)uniform(-100, 100), (double)uniform(-100, 100), (double)uniform(-100, 100)};
         float e = i % 2 ? uniform(0, 1e-3f) : 0;
-        sr_vec3 rounded = {(float)(p[0] + (double)uniform(-e, e)), (float)(p[1] + (double)uniform(-e, e)), (float)(p[2] + (double)uniform(-e, e))};
+        sr_vec3 rounded = {(float)(p[0] + (double)uniform(-e, e)), (float)(p[1] + (double)uniform(-e, e)),
+                           (float)(p[2] + (double)uniform(-e, e))};
         sr_vec3 p_error = {e * 1.05f, e * 1.05f, e * 1.05f}, error; // and the rounding to float
         sr_vec3 q = sr_transform_point_error(&t, rounded, p_error, &error);
         for (int r = 0; r < 3; ++r) {

@@ -24,8 +24,10 @@ static struct sr_transform product(struct sr_transform a, struct sr_transform b)
 
 static struct sr_transform any(bool mirrors)
 {
-    struct sr_transform turn = sr_transform_rotate(uniform(-180, 180), vector(1)), other = sr_transform_rotate(uniform(-180, 180), vector(1));
-    struct sr_transform size = sr_transform_scale((sr_vec3){uniform(0.3f, 3), mirrors ? uniform(-3, -0.3f) : uniform(0.3f, 3), uniform(0.3f, 3)});
+    struct sr_transform turn = sr_transform_rotate(uniform(-180, 180), vector(1)),
+                        other = sr_transform_rotate(uniform(-180, 180), vector(1));
+    struct sr_transform size = sr_transform_scale(
+        (sr_vec3){uniform(0.3f, 3), mirrors ? uniform(-3, -0.3f) : uniform(0.3f, 3), uniform(0.3f, 3)});
     return product(product(sr_transform_translate(vector(10)), turn), product(size, other));
 }
 
@@ -80,12 +82,14 @@ TEST(the_way_between_is_slerp_after_even_stretching)
 {
     for (int i = 0; i < 300; ++i) {
         double angle[2] = {(double)uniform(-180, 180), (double)uniform(-180, 180)}, q[2][4], dot = 0;
-        sr_vec3 axis[2] = {sr_normalize(vector(1)), sr_normalize(vector(1))}, T[2] = {vector(5), vector(5)}, S[2] = {{1, 2, 0.5f}, {2, 1, 0.7f}};
+        sr_vec3 axis[2] = {sr_normalize(vector(1)), sr_normalize(vector(1))}, T[2] = {vector(5), vector(5)},
+                S[2] = {{1, 2, 0.5f}, {2, 1, 0.7f}};
         struct sr_transform ends[2];
         for (int k = 0; k < 2; ++k) {
             const double a[3] = {(double)axis[k].x, (double)axis[k].y, (double)axis[k].z};
             quaternion(angle[k] * (3.14159265358979323846 / 180), a, q[k]);
-            ends[k] = product(product(sr_transform_translate(T[k]), sr_transform_rotate((float)angle[k], axis[k])), sr_transform_scale(S[k]));
+            ends[k] = product(product(sr_transform_translate(T[k]), sr_transform_rotate((float)angle[k], axis[k])),
+                              sr_transform_scale(S[k]));
         }
         for (int c = 0; c < 4; ++c)
             dot += q[0][c] * q[1][c];
@@ -95,9 +99,12 @@ TEST(the_way_between_is_slerp_after_even_stretching)
         EXPECT(sr_motion_make(&ends[0], &ends[1], 0, 1, &m));
         double x = (double)uniform(0, 1), theta = acos(fmin(fabs(dot), 1)), now[4];
         for (int c = 0; c < 4; ++c)
-            now[c] = theta < 1e-6 ? q[0][c] : (sin((1 - x) * theta) * q[0][c] + (dot < 0 ? -1 : 1) * sin(x * theta) * q[1][c]) / sin(theta);
+            now[c] = theta < 1e-6 ? q[0][c]
+                                  : (sin((1 - x) * theta) * q[0][c] + (dot < 0 ? -1 : 1) * sin(x * theta) * q[1][c]) /
+                                        sin(theta);
         sr_vec3 p = vector(1), s = sr_add(sr_scale((float)(1 - x), S[0]), sr_scale((float)x, S[1]));
-        sr_vec3 expected = sr_add(turned(now, (sr_vec3){s.x * p.x, s.y * p.y, s.z * p.z}), sr_add(sr_scale((float)(1 - x), T[0]), sr_scale((float)x, T[1])));
+        sr_vec3 expected = sr_add(turned(now, (sr_vec3){s.x * p.x, s.y * p.y, s.z * p.z}),
+                                  sr_add(sr_scale((float)(1 - x), T[0]), sr_scale((float)x, T[1])));
         struct sr_transform t;
         sr_motion_at(&m, (float)x, &t);
         expect_close(sr_transform_point(&t, p), expected, 2e-5f);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Gradient noise: a published value, its zeros, its period and symmetry, and sums of octaves against their definition. */
+/* Gradient noise: a published value, its zeros, its period and symmetry, and sums of octaves against their definition.
+ */
 #include "test.h"
 
 static const sr_vec3 nothing;

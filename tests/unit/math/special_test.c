@@ -63,7 +63,8 @@ TEST(incomplete_gamma_agrees_with_closed_forms_and_quadrature)
     // recurrence Q(a + 1, x) = Q(a, x) + x^a e^-x / Gamma(a + 1), across the change of method at a = 20
     for (double b = 0.25; b < 60; b += 0.5)
         for (double x = 0.5; x < 90; x += 3.7)
-            EXPECT_NEAR(sr_incomplete_gamma_upper(b + 1, x) - sr_incomplete_gamma_upper(b, x), exp(b * log(x) - x - lgamma(b + 1)), 2e-14);
+            EXPECT_NEAR(sr_incomplete_gamma_upper(b + 1, x) - sr_incomplete_gamma_upper(b, x),
+                        exp(b * log(x) - x - lgamma(b + 1)), 2e-14);
 }
 
 TEST(incomplete_beta_agrees_with_closed_forms_and_quadrature)
@@ -81,7 +82,8 @@ TEST(incomplete_beta_agrees_with_closed_forms_and_quadrature)
         for (int k = -3; k <= 3; ++k) {
             double x = mean + k * sigma;
             if (x > 0 && x < 1)
-                EXPECT_RELATIVE(sr_incomplete_beta(a, b, x), quadrature(beta_density, a, b, fmax(0, mean - 40 * sigma), x), 1e-9);
+                EXPECT_RELATIVE(sr_incomplete_beta(a, b, x),
+                                quadrature(beta_density, a, b, fmax(0, mean - 40 * sigma), x), 1e-9);
         }
     }
 }

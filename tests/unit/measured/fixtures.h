@@ -24,7 +24,8 @@ static inline sr_spectrum wavelengths(void)
     return lambda;
 }
 
-/* A matte base and a lobe about the half vector, reciprocal: f = a / pi + b h_z^n [1/sr]; over wavelengths the base rises. */
+/* A matte base and a lobe about the half vector, reciprocal: f = a / pi + b h_z^n [1/sr]; over wavelengths the base
+ * rises. */
 struct gloss {
     float base, lobe, exponent;
 };
@@ -151,8 +152,8 @@ static inline struct bytes tensor_file(const struct tensor *fields, int count)
     return b;
 }
 
-/* An RGL file whose warp is the identity: the density is 1 everywhere, so spectra are f cos_theta_i over the half vector.
- * quarter: 1, 2 or 4 of the turn that phi_i covers; 0: isotropic. */
+/* An RGL file whose warp is the identity: the density is 1 everywhere, so spectra are f cos_theta_i over the half
+ * vector. quarter: 1, 2 or 4 of the turn that phi_i covers; 0: isotropic. */
 static inline struct bytes rgl_file(sr_measured_source f, void *user, int part, bool is_rgb)
 {
     enum { N = 48, T = 10, W = 3 };

@@ -49,10 +49,14 @@ static inline double quadrant(double c, double gamma)
 }
 
 /* c_steps intervals over the planes that the symmetry keeps, gamma_steps over 0 … 180. */
-static inline struct sr_photometry luminaire_make(struct sr_arena *arena, enum sr_photometry_symmetry symmetry, intensity_of *I, uint32_t c_steps, uint32_t gamma_steps)
+static inline struct sr_photometry luminaire_make(struct sr_arena *arena, enum sr_photometry_symmetry symmetry,
+                                                  intensity_of *I, uint32_t c_steps, uint32_t gamma_steps)
 {
     static const float first[] = {0, 0, 0, 90, 0}, length[] = {360, 0, 180, 180, 90};
-    uint32_t c_count = symmetry == SR_PHOTOMETRY_AXIAL ? 1 : symmetry == SR_PHOTOMETRY_ALL_PLANES ? c_steps : c_steps + 1, gamma_count = gamma_steps + 1;
+    uint32_t c_count = symmetry == SR_PHOTOMETRY_AXIAL        ? 1
+                       : symmetry == SR_PHOTOMETRY_ALL_PLANES ? c_steps
+                                                              : c_steps + 1,
+             gamma_count = gamma_steps + 1;
     float *c = sr_arena_alloc(arena, c_count * sizeof *c), *gamma = sr_arena_alloc(arena, gamma_count * sizeof *gamma);
     float *candela = sr_arena_alloc(arena, (size_t)c_count * gamma_count * sizeof *candela);
     for (uint32_t i = 0; i < c_count; ++i)
@@ -62,9 +66,23 @@ static inline struct sr_photometry luminaire_make(struct sr_arena *arena, enum s
     for (uint32_t i = 0; i < c_count; ++i)
         for (uint32_t j = 0; j < gamma_count; ++j)
             candela[i * gamma_count + j] = (float)I((double)c[i], (double)gamma[j]);
-    static const struct sr_photometry_word words[] = {{"MANUFAC", "Formula & Sons"}, {"LUMINAIRE", "a lamp of numbers"}};
-    return (struct sr_photometry){.symmetry = symmetry, .c_count = c_count, .gamma_count = gamma_count, .c = c, .gamma = gamma, .candela = candela, .lamp_count = 2,
-                                  .lamp_flux = 1200, .power_W = 12.5f, .along_c0 = 0.3f, .along_c90 = 1.2f, .height = 0.05f, .words = words, .word_count = 2, .note = ""};
+    static const struct sr_photometry_word words[] = {{"MANUFAC", "Formula & Sons"},
+                                                      {"LUMINAIRE", "a lamp of numbers"}};
+    return (struct sr_photometry){.symmetry = symmetry,
+                                  .c_count = c_count,
+                                  .gamma_count = gamma_count,
+                                  .c = c,
+                                  .gamma = gamma,
+                                  .candela = candela,
+                                  .lamp_count = 2,
+                                  .lamp_flux = 1200,
+                                  .power_W = 12.5f,
+                                  .along_c0 = 0.3f,
+                                  .along_c90 = 1.2f,
+                                  .height = 0.05f,
+                                  .words = words,
+                                  .word_count = 2,
+                                  .note = ""};
 }
 
 #endif

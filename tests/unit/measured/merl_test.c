@@ -24,9 +24,9 @@ static const struct sr_measured *satin_file(void)
     return m = parse(&arena, &written);
 }
 
-/* The cells are half a degree wide in phi_d, one in theta_d and i/45 in theta_h: linear interpolation of h_z^60 is off by
- * less than step^2 / 8 times the second derivative, 1 % of its height where it is steep, and the colour of the base by the
- * uplift of a smooth spectrum. */
+/* The cells are half a degree wide in phi_d, one in theta_d and i/45 in theta_h: linear interpolation of h_z^60 is off
+ * by less than step^2 / 8 times the second derivative, 1 % of its height where it is steep, and the colour of the base
+ * by the uplift of a smooth spectrum. */
 TEST(merl_written_from_a_formula_reads_back_within_interpolation)
 {
     const struct sr_measured *m = satin_file();

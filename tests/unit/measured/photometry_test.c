@@ -10,9 +10,12 @@ static const struct {
     uint32_t c_steps;
     double flux; // [lm]
 } shapes[] = {
-    {SR_PHOTOMETRY_ALL_PLANES, lopsided, 72, 200 * 3.14159265358979},       {SR_PHOTOMETRY_AXIAL, lambertian, 0, 100},
-    {SR_PHOTOMETRY_C0_C180, c0_symmetric, 36, 200 * 3.14159265358979}, {SR_PHOTOMETRY_C90_C270, c90_symmetric, 36, 200 * 3.14159265358979},
-    {SR_PHOTOMETRY_QUADRANT, quadrant, 18, 200 * 3.14159265358979},      {SR_PHOTOMETRY_AXIAL, cos20, 0, 2000 * 3.14159265358979 / 21},
+    {SR_PHOTOMETRY_ALL_PLANES, lopsided, 72, 200 * 3.14159265358979},
+    {SR_PHOTOMETRY_AXIAL, lambertian, 0, 100},
+    {SR_PHOTOMETRY_C0_C180, c0_symmetric, 36, 200 * 3.14159265358979},
+    {SR_PHOTOMETRY_C90_C270, c90_symmetric, 36, 200 * 3.14159265358979},
+    {SR_PHOTOMETRY_QUADRANT, quadrant, 18, 200 * 3.14159265358979},
+    {SR_PHOTOMETRY_AXIAL, cos20, 0, 2000 * 3.14159265358979 / 21},
     {SR_PHOTOMETRY_AXIAL, isotropic, 0, 100},
 };
 enum { SHAPES = sizeof shapes / sizeof shapes[0] };
@@ -22,13 +25,15 @@ static struct sr_photometry shape(struct sr_arena *arena, int i)
     return luminaire_make(arena, shapes[i].symmetry, shapes[i].I, shapes[i].c_steps, 180);
 }
 
-static const struct sr_photometry *round_trip(struct sr_arena *arena, const struct sr_photometry *p, enum sr_photometry_format format)
+static const struct sr_photometry *round_trip(struct sr_arena *arena, const struct sr_photometry *p,
+                                              enum sr_photometry_format format)
 {
     struct sr_error error = {0};
     char *text;
     size_t size;
     const struct sr_photometry *out;
-    if (sr_photometry_print(p, format, &text, &size, &error) != SR_OK || sr_photometry_parse("file", text, size, arena, &out, &error) != SR_OK)
+    if (sr_photometry_print(p, format, &text, &size, &error) != SR_OK ||
+        sr_photometry_parse("file", text, size, arena, &out, &error) != SR_OK)
         test_fail(__FILE__, __LINE__, "%s", error.text);
     sr_free(text);
     return out;
@@ -40,7 +45,8 @@ TEST(fluxes_are_those_of_the_formulas)
     for (int i = 0; i < SHAPES; ++i) {
         struct sr_photometry p = shape(&arena, i);
         EXPECT_RELATIVE(sr_photometry_flux(&p, 0, 180), shapes[i].flux, 1.5e-3);
-        EXPECT_RELATIVE(sr_photometry_flux(&p, 0, 37.3) + sr_photometry_flux(&p, 37.3, 180), sr_photometry_flux(&p, 0, 180), 1e-12);
+        EXPECT_RELATIVE(sr_photometry_flux(&p, 0, 37.3) + sr_photometry_flux(&p, 37.3, 180),
+                        sr_photometry_flux(&p, 0, 180), 1e-12);
     }
     // 2 pi (25 + 15) of the hemisphere below: 50 and 30 cos gamma
     struct sr_photometry p = shape(&arena, 0);
@@ -51,14 +57,16 @@ TEST(fluxes_are_those_of_the_formulas)
 TEST(flux_is_the_integral_of_the_intensity_between_the_angles)
 {
     struct sr_arena arena = {0};
-    struct sr_photometry p = luminaire_make(&arena, SR_PHOTOMETRY_ALL_PLANES, lopsided, 7, 5); // coarse: the interpolant counts
+    struct sr_photometry p =
+        luminaire_make(&arena, SR_PHOTOMETRY_ALL_PLANES, lopsided, 7, 5); // coarse: the interpolant counts
     enum { N = 40 };
     double x[N], w[N], sum = 0;
     for (int segment = 0; segment < 5; ++segment) {
         sr_gauss_legendre(N, 36 * segment, 36 * (segment + 1), x, w);
         for (int i = 0; i < N; ++i)
             for (int k = 0; k < 7 * 200; ++k)
-                sum += w[i] * RADIANS * sin(x[i] * RADIANS) * sr_photometry_intensity(&p, (k + 0.5) * 360 / 1400, x[i]) * 360 / 1400 * RADIANS;
+                sum += w[i] * RADIANS * sin(x[i] * RADIANS) *
+                       sr_photometry_intensity(&p, (k + 0.5) * 360 / 1400, x[i]) * 360 / 1400 * RADIANS;
     }
     EXPECT_RELATIVE(sr_photometry_flux(&p, 0, 180), sum, 1e-6);
     sr_arena_free(&arena);
@@ -93,7 +101,8 @@ TEST(files_keep_their_numbers_through_ies_and_eulumdat_and_back)
                 p.along_c0 = p.is_round ? p.along_c90 : p.along_c0;
                 p.lamp_flux = absolute ? NAN : p.lamp_flux;
                 const struct sr_photometry *first = round_trip(&arena, &p, SR_PHOTOMETRY_IES);
-                const struct sr_photometry *second = round_trip(&arena, first, SR_PHOTOMETRY_LDT), *third = round_trip(&arena, second, SR_PHOTOMETRY_IES);
+                const struct sr_photometry *second = round_trip(&arena, first, SR_PHOTOMETRY_LDT),
+                                           *third = round_trip(&arena, second, SR_PHOTOMETRY_IES);
                 EXPECT_EQUAL_INT(first->year, years[y]);
                 EXPECT_EQUAL_TEXT(first->note, "");
                 const struct sr_photometry *all[] = {first, second, third};
@@ -133,7 +142,8 @@ TEST(factors_units_and_editions_are_applied)
 {
     struct sr_arena arena = {0};
     // feet, two factors; the third counts before 1995 only
-    const struct sr_photometry *p = parse(&arena, "IESNA:LM-63-2002\n[TEST] 1\nTILT=NONE\n2 500 2 3 1 1 1 1 2 0.5\n0.9 0.5 20\n0 45,90\n0\n100 50 0\n");
+    const struct sr_photometry *p = parse(
+        &arena, "IESNA:LM-63-2002\n[TEST] 1\nTILT=NONE\n2 500 2 3 1 1 1 1 2 0.5\n0.9 0.5 20\n0 45,90\n0\n100 50 0\n");
     EXPECT_RELATIVE(sr_photometry_intensity(p, 12, 0), 180, 1e-6);
     EXPECT_RELATIVE(sr_photometry_intensity(p, 12, 22.5), 135, 1e-6);
     EXPECT_NEAR(sr_photometry_intensity(p, 12, 91), 0, 0);
@@ -141,13 +151,17 @@ TEST(factors_units_and_editions_are_applied)
     EXPECT_RELATIVE(p->along_c90, 0.3048, 1e-6); // width
     EXPECT_RELATIVE(p->along_c0, 0.6096, 1e-6);  // length
     EXPECT_RELATIVE(p->height, 0.1524, 1e-6);
-    p = parse(&arena, "an old file\nTILT=INCLUDE\n1\n2\n0 90\n1 0.8\n1 500 2 3 1 1 2 -0.2 0 0\n0.9 0.5 20\n0 45\n90 0 100\n50 0\n");
+    p = parse(
+        &arena,
+        "an old file\nTILT=INCLUDE\n1\n2\n0 90\n1 0.8\n1 500 2 3 1 1 2 -0.2 0 0\n0.9 0.5 20\n0 45\n90 0 100\n50 0\n");
     EXPECT_EQUAL_INT(p->year, 1986);
     EXPECT_RELATIVE(sr_photometry_intensity(p, 0, 0), 90, 1e-6);
     EXPECT(p->is_round && fabsf(p->along_c0 - 0.2f) < 1e-6f && strstr(p->note, "TILT"));
     // EULUMDAT: decimal commas, a conversion factor, 1500 lm
-    p = parse(&arena, "Maker\n1\n1\n1\n0\n3\n45\nreport\nname\nnumber\nfile\ndate\n100\n0\n50\n80,5\n0\n0\n0\n0\n0\n100\n80\n1,5\n0\n1\n1\nLED\n1500\n3000K\n80\n10\n"
-                      "0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n45\n90\n100,5\n50\n0\n");
+    p = parse(
+        &arena,
+        "Maker\n1\n1\n1\n0\n3\n45\nreport\nname\nnumber\nfile\ndate\n100\n0\n50\n80,5\n0\n0\n0\n0\n0\n100\n80\n1,5\n0\n1\n1\nLED\n1500\n3000K\n80\n10\n"
+        "0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n45\n90\n100,5\n50\n0\n");
     EXPECT_RELATIVE(sr_photometry_intensity(p, 200, 0), 100.5 * 1.5 * 1.5, 1e-6);
     EXPECT_RELATIVE(p->along_c0, 0.0805, 1e-6);
     EXPECT(p->is_round && strstr(p->note, "light output ratio"));
@@ -226,7 +240,8 @@ TEST(directions_are_drawn_as_the_density_says)
         for (int cell = 0; cell < NC * NG; ++cell) {
             double sum = 0;
             for (int k = 0; k < 40 * 40; ++k) {
-                double c = (cell % NC + (k % 40 + 0.5) / 40) * 360 / NC * RADIANS, g = (cell / NC + (k / 40 + 0.5) / 40) * 180 / NG * RADIANS;
+                double c = (cell % NC + (k % 40 + 0.5) / 40) * 360 / NC * RADIANS,
+                       g = (cell / NC + (k / 40 + 0.5) / 40) * 180 / NG * RADIANS;
                 sr_vec3 d = {(float)(sin(g) * cos(c)), (float)(sin(g) * sin(c)), (float)-cos(g)};
                 sum += (double)sr_photometry_pdf(&guide, d) * sin(g);
             }
@@ -240,7 +255,8 @@ TEST(directions_are_drawn_as_the_density_says)
             sr_vec2 u = {sr_rng_float(&rng), sr_rng_float(&rng)};
             sr_vec3 d = sr_photometry_sample(&guide, u, &pdf);
             differing += fabsf(sr_photometry_pdf(&guide, d) - pdf) > 1e-3f * pdf;
-            double c = atan2((double)d.y, (double)d.x) / RADIANS, gamma = acos(fmax(-1, fmin(1, -(double)d.z))) / RADIANS;
+            double c = atan2((double)d.y, (double)d.x) / RADIANS,
+                   gamma = acos(fmax(-1, fmin(1, -(double)d.z))) / RADIANS;
             int x = (int)(fmod(c + 360, 360) / 360 * NC), y = (int)(gamma / 180 * NG);
             seen[(y < NG ? y : NG - 1) * NC + (x < NC ? x : NC - 1)] += 1;
             sr_tally_add(&flux, sr_photometry_intensity_along(&p, d) / (double)pdf);
@@ -280,10 +296,13 @@ TEST(wrong_files_are_told_with_line_and_reason)
     refused("x\nTILT=NONE\n1 1 1 2 2 1 2 0 0 0\n1 1 1\n0 90\n0 45\n1 1 1 1\n", "the last horizontal angle is 45 deg");
     refused("x\nTILT=NONE\n1 1 0 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 1\n", "multiplier 0");
     refused("x\nTILT=NONE\n1 1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n0 0\n", "all intensities are 0");
-    refused("x\nTILT=NONE\n1 1 1 2000000000 2000000000 1 2 0 0 0\n1 1 1\n0 90\n0\n0 0\n", "do not fit into the rest of the file");
+    refused("x\nTILT=NONE\n1 1 1 2000000000 2000000000 1 2 0 0 0\n1 1 1\n0 90\n0\n0 0\n",
+            "do not fit into the rest of the file");
     refused("Maker\n1\n5\n", "lamp:3: the symmetry is 5");
     refused("Maker\n1\n1\n1\n0\n3\n45\nr\n", "the file ends where the luminaire's name is expected");
-    refused("Maker\n1\n2\n3\n0\n3\n45\nr\nn\n1\nf\nd\n1\n1\n1\n1\n1\n0\n0\n0\n0\n100\n100\n1\n0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n", "lamp:4: 3 C-planes: a multiple of 2");
+    refused(
+        "Maker\n1\n2\n3\n0\n3\n45\nr\nn\n1\nf\nd\n1\n1\n1\n1\n1\n0\n0\n0\n0\n100\n100\n1\n0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n",
+        "lamp:4: 3 C-planes: a multiple of 2");
 }
 
 /* Every prefix of a file is refused with a reason, or is a shorter file; nothing is read beyond its end. */
@@ -306,7 +325,9 @@ TEST(files_cut_anywhere_do_no_harm)
             sr_status status = sr_photometry_parse("file", exact, cut, &scratch, &out, &reason);
             free(exact);
             bool is_last_number = !memchr(text + cut, '\n', size - cut - 1) && !memchr(text + cut, ' ', size - cut - 1);
-            if (status == SR_OK ? !is_last_number : (status != SR_ERROR_INPUT || strncmp(reason.text, "file", 4) != 0 || strlen(reason.text) < 15))
+            if (status == SR_OK
+                    ? !is_last_number
+                    : (status != SR_ERROR_INPUT || strncmp(reason.text, "file", 4) != 0 || strlen(reason.text) < 15))
                 test_fail(__FILE__, __LINE__, "cut at %zu of %zu: status %d, \"%s\"", cut, size, status, reason.text);
             EXPECT(scratch.total <= 64 * cut + (1u << 18));
             sr_arena_free(&scratch);

@@ -69,7 +69,8 @@ TEST(rgl_rgb_becomes_a_spectrum_of_that_colour)
     drop(&b);
 }
 
-/* GGX's normals with f cos / (D / 4 sigma) = F G2 / G1 + …: what make_synth_bsdf.py wrote; D and sigma by the closed form. */
+/* GGX's normals with f cos / (D / 4 sigma) = F G2 / G1 + …: what make_synth_bsdf.py wrote; D and sigma by the closed
+ * form. */
 TEST(rgl_synthetic_metal_is_ggx)
 {
     struct sr_arena arena = {0};

@@ -4,8 +4,9 @@
 
 static struct gloss satin = {.base = 0.4f, .lobe = 0.8f, .exponent = 60};
 
-/* Counts in cells of the half vector (the guide's cells by twos), against the integral of pdf over them by 8 x 8 points: in
- * solid angle of m the density is smooth inside of a cell, but for the horizon. What is lost below it is a cell of its own. */
+/* Counts in cells of the half vector (the guide's cells by twos), against the integral of pdf over them by 8 x 8
+ * points: in solid angle of m the density is smooth inside of a cell, but for the horizon. What is lost below it is a
+ * cell of its own. */
 static void expect_sampler_draws_by_pdf(const struct sr_measured *m, bool is_isotropic, sr_vec3 wo)
 {
     enum { NU = 16, NV = 16, SUB = 8, DRAWS = 40000 };

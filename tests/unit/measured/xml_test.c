@@ -80,7 +80,8 @@ TEST(klems_diagonal_is_the_mirror_and_the_straight_way)
     drop(&b);
 }
 
-/* One number is not symmetric: light from the patch about (10, 0) deg leaves to the patch about the normal, not back. */
+/* One number is not symmetric: light from the patch about (10, 0) deg leaves to the patch about the normal, not back.
+ */
 TEST(klems_columns_are_where_light_comes_from_and_rows_turn_that_round)
 {
     for (int rows = 0; rows < 2; ++rows) {

@@ -42,13 +42,14 @@ TEST(linear_interpolation_is_exact_for_linear_fields_and_fades_outside)
     struct sr_medium m = scenery_prepare(sr_medium_model_find("uniformgrid"), self);
     struct sr_rng rng = sr_rng_seed(1, 1);
     for (int i = 0; i < 200; ++i) {
-        float x = 0.5f + (NX - 1) * sr_rng_float(&rng), y = 1 + (2 * NY - 2) * sr_rng_float(&rng), z = 0.5f + (NZ - 1) * sr_rng_float(&rng);
+        float x = 0.5f + (NX - 1) * sr_rng_float(&rng), y = 1 + (2 * NY - 2) * sr_rng_float(&rng),
+              z = 0.5f + (NZ - 1) * sr_rng_float(&rng);
         double d = 1 + 2 * ((double)x - 0.5) + 0.5 * ((double)y / 2 - 0.5) + 3 * ((double)z - 0.5);
         EXPECT_RELATIVE(look(m, 10 + x, y, z).sigma_a[0], 0.25 * d, 1e-5);
         EXPECT_RELATIVE(look(m, 10 + x, y, z).sigma_s[2], d, 1e-5);
     }
-    EXPECT_RELATIVE(look(m, 10, 1, 0.5f).sigma_s[0], 0.5, 1e-5);   // at the face: half of the first voxel
-    EXPECT_RELATIVE(look(m, 10, 0, 0).sigma_s[0], 0.125, 1e-5);    // at the corner: an eighth
+    EXPECT_RELATIVE(look(m, 10, 1, 0.5f).sigma_s[0], 0.5, 1e-5); // at the face: half of the first voxel
+    EXPECT_RELATIVE(look(m, 10, 0, 0).sigma_s[0], 0.125, 1e-5);  // at the corner: an eighth
     EXPECT_NEAR(look(m, 9, 1, 0.5f).sigma_s[0], 0, 0);
     EXPECT_NEAR(look(m, 1e30f, 1, 0.5f).sigma_s[0], 0, 0);
 }
@@ -98,7 +99,8 @@ TEST(grids_glow_by_spectrum_and_by_temperature)
 
 TEST(coloured_grids_interpolate_spectra)
 {
-    static const float sigma_a[6] = {0.1f, 0.5f, 0.9f, 3, 2, 0}, sigma_s[6] = {1, 1, 1, 0, 0, 0}, Le[6] = {1, 1, 1, 0, 0, 0};
+    static const float sigma_a[6] = {0.1f, 0.5f, 0.9f, 3, 2, 0}, sigma_s[6] = {1, 1, 1, 0, 0, 0},
+                       Le[6] = {1, 1, 1, 0, 0, 0};
     void *self = grid("rgbgrid", 1, 1, 2);
     MEMBER("rgbgrid", self, "sigma_a", struct sr_slice) = slice(sigma_a, 2);
     MEMBER("rgbgrid", self, "sigma_s", struct sr_slice) = slice(sigma_s, 2);
@@ -108,7 +110,8 @@ TEST(coloured_grids_interpolate_spectra)
     struct sr_medium m = scenery_prepare(sr_medium_model_find("rgbgrid"), self);
     EXPECT(m.model->glows(m.self));
     struct sr_wavelengths w = scenery_wavelengths();
-    struct sr_spd first = sr_spd_from_rgb_unbounded(SR_SRGB, (struct sr_rgb){0.1f, 0.5f, 0.9f}), second = sr_spd_from_rgb_unbounded(SR_SRGB, (struct sr_rgb){3, 2, 0});
+    struct sr_spd first = sr_spd_from_rgb_unbounded(SR_SRGB, (struct sr_rgb){0.1f, 0.5f, 0.9f}),
+                  second = sr_spd_from_rgb_unbounded(SR_SRGB, (struct sr_rgb){3, 2, 0});
     for (int i = 0; i < SR_LAMBDA_COUNT; ++i) {
         double a = (double)sr_spd_eval(&first, w.lambda)[i], b = (double)sr_spd_eval(&second, w.lambda)[i];
         EXPECT_RELATIVE(look(m, 0.5f, 0.5f, 0.25f).sigma_a[i], 4 * a, 1e-5);
@@ -140,14 +143,20 @@ TEST(a_cloud_has_the_density_of_its_formula)
             sr_vec3 p = {sr_rng_float(&rng), sr_rng_float(&rng), sr_rng_float(&rng)};
             double q[3] = {4 * (double)p.x, 4 * (double)p.y, 4 * (double)p.z}, noise = 0;
             for (int k = 0; k < 2 && wispy; ++k) {
-                double f = 10 * pow(1.99, k), slope[3], n = (double)sr_noise((sr_vec3){(float)(f * q[0]), (float)(f * q[1]), (float)(f * q[2])});
+                double f = 10 * pow(1.99, k), slope[3],
+                       n = (double)sr_noise((sr_vec3){(float)(f * q[0]), (float)(f * q[1]), (float)(f * q[2])});
                 for (int j = 0; j < 3; ++j)
-                    slope[j] = ((double)sr_noise((sr_vec3){(float)(f * q[0] + 0.01 * (j == 0)), (float)(f * q[1] + 0.01 * (j == 1)), (float)(f * q[2] + 0.01 * (j == 2))}) - n) / 0.01;
+                    slope[j] = ((double)sr_noise((sr_vec3){(float)(f * q[0] + 0.01 * (j == 0)),
+                                                           (float)(f * q[1] + 0.01 * (j == 1)),
+                                                           (float)(f * q[2] + 0.01 * (j == 2))}) -
+                                n) /
+                               0.01;
                 for (int j = 0; j < 3; ++j)
                     q[j] += 0.05 / (1 + k) * slope[j];
             }
             for (int k = 0; k < 5; ++k) {
-                double f = pow(1.99, k), n = (double)sr_noise((sr_vec3){(float)(f * q[0]), (float)(f * q[1]), (float)(f * q[2])});
+                double f = pow(1.99, k),
+                       n = (double)sr_noise((sr_vec3){(float)(f * q[0]), (float)(f * q[1]), (float)(f * q[2])});
                 noise += pow(0.5, k + 1) * n;
                 most = fmax(most, fabs(n));
             }
@@ -178,7 +187,8 @@ TEST(grids_refuse_what_makes_no_sense)
     EXPECT(strstr(scenery_refusal(u, self), "expected"));
     self = grid("uniformgrid", 2, 1, 1);
     MEMBER("uniformgrid", self, "density", struct sr_slice) = slice(bad, 2);
-    EXPECT_EQUAL_TEXT(scenery_refusal(u, self), "\"density\" of voxel (1, 0, 0) is -1: expected finite values of 0 or more");
+    EXPECT_EQUAL_TEXT(scenery_refusal(u, self),
+                      "\"density\" of voxel (1, 0, 0) is -1: expected finite values of 0 or more");
     MEMBER("uniformgrid", self, "density", struct sr_slice) = slice(nan_, 2);
     EXPECT(strstr(scenery_refusal(u, self), "voxel (0, 0, 0) is"));
     MEMBER("uniformgrid", self, "density", struct sr_slice) = slice(two, 2);

@@ -53,7 +53,9 @@ TEST(presets_have_the_colours_that_were_measured)
                 sr_observer_1931(lambda, bar);
                 struct sr_spd white = {.kind = SR_SPD_TABLE, .scale = 1, .table = srgb->illuminant};
                 for (int i = 0; i < 3; ++i)
-                    xyz[i] += bar[i] * (double)(sr_spd_at(&s[which], (float)lambda) * sr_spd_at(&white, (float)lambda)) / srgb->illuminant_luminous_integral;
+                    xyz[i] += bar[i] *
+                              (double)(sr_spd_at(&s[which], (float)lambda) * sr_spd_at(&white, (float)lambda)) /
+                              srgb->illuminant_luminous_integral;
             }
             struct sr_rgb rgb = sr_rgb_from_xyz(srgb, (struct sr_xyz){(float)xyz[0], (float)xyz[1], (float)xyz[2]});
             EXPECT_NEAR(rgb.r, expected[0], 0.01 * largest);
@@ -77,7 +79,9 @@ TEST(emission_has_the_luminance_that_the_scene_says)
     for (int kind = 0; kind < 3; ++kind) {
         char *self = scenery_medium(model);
         *(struct sr_spd *)scenery_member(model, self, "Le") =
-            kind == 0 ? sr_spd_blackbody(3000) : kind == 1 ? sr_spd_from_rgb_illuminant(SR_SRGB, (struct sr_rgb){0.5f, 0.5f, 0.5f}) : sr_spd_constant(0.2f);
+            kind == 0   ? sr_spd_blackbody(3000)
+            : kind == 1 ? sr_spd_from_rgb_illuminant(SR_SRGB, (struct sr_rgb){0.5f, 0.5f, 0.5f})
+                        : sr_spd_constant(0.2f);
         *(float *)scenery_member(model, self, "Lescale") = 4;
         ((struct sr_medium_common *)(void *)self)->is_absolute = kind == 2;
         scenery_prepare(model, self);

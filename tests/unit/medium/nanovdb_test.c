@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* NanoVDB: files of our own writing against the function that they hold; and damaged ones, which are refused. The reader has also been held
- * against what OpenVDB's own library writes (spheres and tori of fog as float, Fp4, Fp8, Fp16 and FpN, plain and zipped): 3000 interpolated
- * values each within 5e-6. */
+/* NanoVDB: files of our own writing against the function that they hold; and damaged ones, which are refused. The
+ * reader has also been held against what OpenVDB's own library writes (spheres and tori of fog as float, Fp4, Fp8, Fp16
+ * and FpN, plain and zipped): 3000 interpolated values each within 5e-6. */
 #include "medium/sparse.h"
 #include "nanovdb_writer.h"
 #include "scenery.h"
@@ -22,8 +22,13 @@ static float hot(int i, int j, int k)
     return 1000 + 10 * (float)k;
 }
 
-static const struct nanovdb_spec plain = {
-    .name = "density", .type = 1, .lo = {-5, 120, -140}, .hi = {20, 131, 12}, .value = wavy, .matrix = {0.5, 0, 0, 0, 0.25, 0, 0, 0, 0.5}, .shift = {1, 2, 3}};
+static const struct nanovdb_spec plain = {.name = "density",
+                                          .type = 1,
+                                          .lo = {-5, 120, -140},
+                                          .hi = {20, 131, 12},
+                                          .value = wavy,
+                                          .matrix = {0.5, 0, 0, 0, 0.25, 0, 0, 0, 0.5},
+                                          .shift = {1, 2, 3}};
 
 static struct nanovdb_file write_one(const struct nanovdb_spec *s)
 {
@@ -44,7 +49,8 @@ TEST(sparse_grids_hold_what_was_written)
         uint32_t type;
         bool has_tiles;
         double tolerance;
-    } cases[] = {{1, false, 1e-6}, {1, true, 1e-6}, {13, false, 0.14}, {14, true, 0.01}, {15, false, 4e-5}, {16, false, 0.6}};
+    } cases[] = {{1, false, 1e-6}, {1, true, 1e-6},   {13, false, 0.14},
+                 {14, true, 0.01}, {15, false, 4e-5}, {16, false, 0.6}};
     for (int n = 0; n < 6; ++n) {
         struct nanovdb_spec spec = plain;
         spec.type = cases[n].type;
@@ -78,7 +84,8 @@ TEST(sparse_grids_hold_what_was_written)
             for (int c = 0; c < 8; ++c)
                 expected += (c & 1 ? f3[0] : 1 - f3[0]) * (c & 2 ? f3[1] : 1 - f3[1]) * (c & 4 ? f3[2] : 1 - f3[2]) *
                             (double)vdb_value(&spec, i[0] + (c & 1), i[1] + (c >> 1 & 1), i[2] + (c >> 2));
-            EXPECT_NEAR(sr_sparse_at(&g, (sr_vec3){(float)x[0], (float)x[1], (float)x[2]}), expected, 1e-4 + cases[n].tolerance);
+            EXPECT_NEAR(sr_sparse_at(&g, (sr_vec3){(float)x[0], (float)x[1], (float)x[2]}), expected,
+                        1e-4 + cases[n].tolerance);
             if (trial % 40)
                 continue;
             double largest = -INFINITY; // of a small box, which may reach outside
@@ -117,16 +124,29 @@ static struct sr_medium medium_of(const char *path, const struct sr_transform *t
     return scenery_prepare(model, self);
 }
 
-/* An oblique map and an oblique transform: values where they belong, majorants that hold, and the transmittance of the walk. */
+/* An oblique map and an oblique transform: values where they belong, majorants that hold, and the transmittance of the
+ * walk. */
 TEST(sparse_media_stand_where_the_map_and_the_transform_put_them)
 {
-    struct nanovdb_spec spec = {.name = "density", .type = 1, .lo = {-7, 3, -30}, .hi = {30, 25, 9}, .value = wavy,
-                                .matrix = {0.2, 0.05, 0, -0.05, 0.2, 0.02, 0, 0.03, 0.1}, .shift = {4, -1, 2}};
-    struct nanovdb_spec temperature = {.name = "temperature", .type = 1, .lo = {0, 0, 0}, .hi = {15, 40, 15}, .value = hot, .matrix = {0.3, 0, 0, 0, 0.3, 0, 0, 0, 0.3}, .shift = {3, 0, 1}};
+    struct nanovdb_spec spec = {.name = "density",
+                                .type = 1,
+                                .lo = {-7, 3, -30},
+                                .hi = {30, 25, 9},
+                                .value = wavy,
+                                .matrix = {0.2, 0.05, 0, -0.05, 0.2, 0.02, 0, 0.03, 0.1},
+                                .shift = {4, -1, 2}};
+    struct nanovdb_spec temperature = {.name = "temperature",
+                                       .type = 1,
+                                       .lo = {0, 0, 0},
+                                       .hi = {15, 40, 15},
+                                       .value = hot,
+                                       .matrix = {0.3, 0, 0, 0, 0.3, 0, 0, 0, 0.3},
+                                       .shift = {3, 0, 1}};
     struct nanovdb_file f = {0};
     nanovdb_write(&f, &temperature);
     nanovdb_write(&f, &spec);
-    struct sr_transform turn = sr_transform_rotate(30, (sr_vec3){1, 2, 3}), move = sr_transform_translate((sr_vec3){-2, 1, 5}), t = sr_transform_multiply(&move, &turn);
+    struct sr_transform turn = sr_transform_rotate(30, (sr_vec3){1, 2, 3}),
+                        move = sr_transform_translate((sr_vec3){-2, 1, 5}), t = sr_transform_multiply(&move, &turn);
     struct sr_medium m = medium_of(write_file(&f, "oblique.nvdb"), &t);
     EXPECT(m.model->glows(m.self));
     struct sr_wavelengths w = scenery_wavelengths();
@@ -134,7 +154,8 @@ TEST(sparse_media_stand_where_the_map_and_the_transform_put_them)
     for (int i = -6; i < 30; i += 3)
         for (int j = 3; j < 25; j += 4)
             for (int k = -29; k < 9; k += 5) {
-                sr_vec3 p = {(float)(4 + 0.2 * i + 0.05 * j), (float)(-1 - 0.05 * i + 0.2 * j + 0.02 * k), (float)(2 + 0.03 * j + 0.1 * k)};
+                sr_vec3 p = {(float)(4 + 0.2 * i + 0.05 * j), (float)(-1 - 0.05 * i + 0.2 * j + 0.02 * k),
+                             (float)(2 + 0.03 * j + 0.1 * k)};
                 m.model->at(m.self, sr_transform_point(&t, p), &w, &at);
                 EXPECT_NEAR(at.sigma_s[1], 2 * wavy(i, j, k), 1e-3);
                 EXPECT_NEAR(at.sigma_a[1], wavy(i, j, k), 1e-3);
@@ -146,7 +167,8 @@ TEST(sparse_media_stand_where_the_map_and_the_transform_put_them)
     struct sr_rng rng = sr_rng_seed(8, 8);
     int met = 0;
     for (int n = 0; n < 3000; ++n) {
-        sr_vec3 o = {7 * sr_rng_float(&rng) + 2, 8 * sr_rng_float(&rng) - 2, 5 * sr_rng_float(&rng) - 1}, d = sr_equal_area_square_to_sphere((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)});
+        sr_vec3 o = {7 * sr_rng_float(&rng) + 2, 8 * sr_rng_float(&rng) - 2, 5 * sr_rng_float(&rng) - 1},
+                d = sr_equal_area_square_to_sphere((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)});
         o = sr_transform_point(&t, sr_mad(o, n % 2 ? -10 : 0, d));
         d = sr_transform_vector(&t, d);
         struct sr_medium_walk walk;
@@ -168,8 +190,12 @@ TEST(sparse_media_stand_where_the_map_and_the_transform_put_them)
                 double index[3] = {(double)q.x, (double)q.y, (double)q.z};
                 bool is_within = true;
                 for (int k = 0; k < 3; ++k) { // of the box around both grids
-                    double lo = k == 0 ? 4 + 0.2 * -7 + 0.05 * 3 : k == 1 ? -1 - 0.05 * 31 + 0.2 * 3 - 0.02 * 30 : 2 + 0.03 * 3 - 0.1 * 30;
-                    double hi = k == 0 ? 4 + 0.2 * 31 + 0.05 * 26 : k == 1 ? -1 + 0.05 * 7 + 0.2 * 26 + 0.02 * 10 : 2 + 0.03 * 26 + 0.1 * 10;
+                    double lo = k == 0   ? 4 + 0.2 * -7 + 0.05 * 3
+                                : k == 1 ? -1 - 0.05 * 31 + 0.2 * 3 - 0.02 * 30
+                                         : 2 + 0.03 * 3 - 0.1 * 30;
+                    double hi = k == 0   ? 4 + 0.2 * 31 + 0.05 * 26
+                                : k == 1 ? -1 + 0.05 * 7 + 0.2 * 26 + 0.02 * 10
+                                         : 2 + 0.03 * 26 + 0.1 * 10;
                     lo = fmin(lo, k == 0 ? 3 : k == 1 ? 0 : 1);
                     hi = fmax(hi, k == 0 ? 3 + 0.3 * 16 : k == 1 ? 0.3 * 41 : 1 + 0.3 * 16);
                     is_within &= index[k] >= lo && index[k] <= hi;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Writes small NanoVDB files for tests: a box of index space whose values a function gives, in a tree of one root, upper and
- * lower nodes and leaves, by the layout of version 32. Shared with the fuzz target. */
+/* Writes small NanoVDB files for tests: a box of index space whose values a function gives, in a tree of one root,
+ * upper and lower nodes and leaves, by the layout of version 32. Shared with the fuzz target. */
 #ifndef TEST_MEDIUM_NANOVDB_WRITER_H
 #define TEST_MEDIUM_NANOVDB_WRITER_H
 
@@ -12,11 +12,11 @@
 
 struct nanovdb_spec {
     const char *name;
-    uint32_t type; // 1: float, 13 to 15: Fp4, Fp8, Fp16, 16: FpN of 2 bits
+    uint32_t type;    // 1: float, 13 to 15: Fp4, Fp8, Fp16, 16: FpN of 2 bits
     int lo[3], hi[3]; // both included
     float (*value)(int i, int j, int k);
-    bool has_tiles;   // leaves that are all of one value become constants of their parents
-    float elsewhere;  // what nodes hold beyond the box
+    bool has_tiles;             // leaves that are all of one value become constants of their parents
+    float elsewhere;            // what nodes hold beyond the box
     double matrix[9], shift[3]; // index to world
     bool has_checksum;
 };
@@ -118,7 +118,8 @@ static inline bool vdb_is_empty(const struct nanovdb_spec *s, const int c[3], in
 static inline size_t vdb_node(struct nanovdb_file *f, const struct nanovdb_spec *s, const int c[3], bool is_upper)
 {
     int side = is_upper ? 32 : 16, size = is_upper ? 128 : 8;
-    size_t at = vdb_add(f, is_upper ? VDB_UPPER_B : VDB_LOWER_B), mask = is_upper ? 4128 : 544, table = is_upper ? 8256 : 1088;
+    size_t at = vdb_add(f, is_upper ? VDB_UPPER_B : VDB_LOWER_B), mask = is_upper ? 4128 : 544,
+           table = is_upper ? 8256 : 1088;
     for (int n = 0; n < side * side * side; ++n) {
         const int child[3] = {c[0] + n / side / side * size, c[1] + n / side % side * size, c[2] + n % side * size};
         if (vdb_is_empty(s, child, size)) {
@@ -196,11 +197,13 @@ static inline void nanovdb_write(struct nanovdb_file *f, const struct nanovdb_sp
     vdb_add(&grid, VDB_ROOT + 64 + 32 * count);
     vdb_put32(grid.data + VDB_ROOT + 24, count);
     for (uint32_t t = 0; t < count; ++t) {
-        int c[3] = {origin[0] + 4096 * (int)(t % (uint32_t)tiles[0]), origin[1] + 4096 * (int)(t / (uint32_t)tiles[0] % (uint32_t)tiles[1]),
+        int c[3] = {origin[0] + 4096 * (int)(t % (uint32_t)tiles[0]),
+                    origin[1] + 4096 * (int)(t / (uint32_t)tiles[0] % (uint32_t)tiles[1]),
                     origin[2] + 4096 * (int)(t / (uint32_t)tiles[0] / (uint32_t)tiles[1])};
         size_t upper = vdb_node(&grid, s, c, true);
         uint8_t *tile = grid.data + VDB_ROOT + 64 + 32 * t;
-        vdb_put64(tile, (uint64_t)((uint32_t)c[2] >> 12) | (uint64_t)((uint32_t)c[1] >> 12) << 21 | (uint64_t)((uint32_t)c[0] >> 12) << 42);
+        vdb_put64(tile, (uint64_t)((uint32_t)c[2] >> 12) | (uint64_t)((uint32_t)c[1] >> 12) << 21 |
+                            (uint64_t)((uint32_t)c[0] >> 12) << 42);
         vdb_put64(tile + 8, upper - VDB_ROOT);
     }
     vdb_header(grid.data, s, grid.size);

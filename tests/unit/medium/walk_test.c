@@ -27,9 +27,11 @@ static float *random_values(struct sr_rng *rng, size_t n, float share_empty, flo
 
 static struct sr_transform random_transform(struct sr_rng *rng)
 {
-    struct sr_transform move = sr_transform_translate((sr_vec3){random_float(rng, -3, 3), random_float(rng, -3, 3), random_float(rng, -3, 3)});
+    struct sr_transform move =
+        sr_transform_translate((sr_vec3){random_float(rng, -3, 3), random_float(rng, -3, 3), random_float(rng, -3, 3)});
     struct sr_transform turn = sr_transform_rotate(random_float(rng, 0, 360), random_direction(rng));
-    struct sr_transform scale = sr_transform_scale((sr_vec3){random_float(rng, 0.3f, 2), -random_float(rng, 0.3f, 2), random_float(rng, 0.3f, 2)});
+    struct sr_transform scale = sr_transform_scale(
+        (sr_vec3){random_float(rng, 0.3f, 2), -random_float(rng, 0.3f, 2), random_float(rng, 0.3f, 2)});
     struct sr_transform a = sr_transform_multiply(&move, &turn);
     return sr_transform_multiply(&a, &scale);
 }
@@ -55,32 +57,38 @@ static struct sr_medium random_medium(enum kind kind, struct sr_rng *rng, struct
         *(int32_t *)scenery_member(model, self, "nz") = n[2];
         uint32_t count = (uint32_t)(n[0] * n[1] * n[2]);
         if (kind == UNIFORM)
-            *(struct sr_slice *)scenery_member(model, self, "density") = (struct sr_slice){random_values(rng, count, 0.6f, 2), count};
+            *(struct sr_slice *)scenery_member(model, self, "density") =
+                (struct sr_slice){random_values(rng, count, 0.6f, 2), count};
         else {
-            *(struct sr_slice *)scenery_member(model, self, "sigma_a") = (struct sr_slice){random_values(rng, 3 * count, 0.6f, 1), count};
+            *(struct sr_slice *)scenery_member(model, self, "sigma_a") =
+                (struct sr_slice){random_values(rng, 3 * count, 0.6f, 1), count};
             if (sr_rng_float(rng) < 0.7f)
-                *(struct sr_slice *)scenery_member(model, self, "sigma_s") = (struct sr_slice){random_values(rng, 3 * count, 0.6f, 1), count};
+                *(struct sr_slice *)scenery_member(model, self, "sigma_s") =
+                    (struct sr_slice){random_values(rng, 3 * count, 0.6f, 1), count};
         }
     }
     if (kind != RGB)
-        *(struct sr_spd *)scenery_member(model, self, "sigma_s") = sr_spd_from_rgb_unbounded(SR_SRGB, (struct sr_rgb){0.2f, 0.5f, 1.5f});
+        *(struct sr_spd *)scenery_member(model, self, "sigma_s") =
+            sr_spd_from_rgb_unbounded(SR_SRGB, (struct sr_rgb){0.2f, 0.5f, 1.5f});
     return scenery_prepare(model, self);
 }
 
 struct line {
     sr_vec3 o, d;
     float t_max;
-    double in, out;        // where it is in the box; in > out: nowhere
+    double in, out;           // where it is in the box; in > out: nowhere
     double from[3], speed[3]; // in the medium's space
 };
 
 static struct line random_line(struct sr_rng *rng, const struct sr_transform *t)
 {
-    sr_vec3 o = {random_float(rng, -2, 3), random_float(rng, -2, 3), random_float(rng, -2, 3)}, d = random_direction(rng);
+    sr_vec3 o = {random_float(rng, -2, 3), random_float(rng, -2, 3), random_float(rng, -2, 3)},
+            d = random_direction(rng);
     uint32_t fate = sr_rng_u32(rng) % 8;
     float *c = &o.x;
     if (fate == 0) // starts within
-        o = (sr_vec3){random_float(rng, BOX_LO, BOX_HI), random_float(rng, BOX_LO, BOX_HI), random_float(rng, BOX_LO, BOX_HI)};
+        o = (sr_vec3){random_float(rng, BOX_LO, BOX_HI), random_float(rng, BOX_LO, BOX_HI),
+                      random_float(rng, BOX_LO, BOX_HI)};
     if (fate == 1 || fate == 2) { // parallel to an axis
         uint32_t axis = sr_rng_u32(rng) % 3;
         d = (sr_vec3){axis == 0, axis == 1, axis == 2};
@@ -96,7 +104,9 @@ static struct line random_line(struct sr_rng *rng, const struct sr_transform *t)
         o = sr_mad(o, -1000, d);
     if (fate == 5) // through a corner
         o = sr_mad((sr_vec3){BOX_LO, BOX_HI, BOX_LO}, -2, d);
-    struct line line = {.o = sr_transform_point(t, o), .d = sr_transform_vector(t, d), .t_max = fate == 6 ? random_float(rng, 0, 1) : 1e6f};
+    struct line line = {.o = sr_transform_point(t, o),
+                        .d = sr_transform_vector(t, d),
+                        .t_max = fate == 6 ? random_float(rng, 0, 1) : 1e6f};
     line.d = sr_normalize(line.d);
     o = sr_inverse_point(t, line.o);
     d = sr_inverse_vector(t, line.d);
@@ -133,8 +143,8 @@ static double depth_within(const struct line *line, double t)
     return depth;
 }
 
-/* The segments come in order and lie within the box; between them, before and after them the medium is empty; in them sigma_t
- * is below the majorant. Rays that graze a face are in or out by rounding. */
+/* The segments come in order and lie within the box; between them, before and after them the medium is empty; in them
+ * sigma_t is below the majorant. Rays that graze a face are in or out by rounding. */
 static void check_line(struct sr_medium m, const struct line *line, struct sr_rng *rng)
 {
     struct sr_wavelengths w = scenery_wavelengths();
@@ -149,8 +159,8 @@ static void check_line(struct sr_medium m, const struct line *line, struct sr_rn
             double t = before + off + (until - before - 2 * off) * (double)sr_rng_float(rng);
             for (int lane = 0; lane < SR_LAMBDA_COUNT && depth_within(line, t) > off; lane += 3)
                 if (sigma_t_at(m, line, t, &w, lane) > 1e-4f)
-                    test_fail(__FILE__, __LINE__, "%s: sigma_t = %g at t = %.9g, between segments (%.9g to %.9g)", m.model->name,
-                              (double)sigma_t_at(m, line, t, &w, lane), t, before, until);
+                    test_fail(__FILE__, __LINE__, "%s: sigma_t = %g at t = %.9g, between segments (%.9g to %.9g)",
+                              m.model->name, (double)sigma_t_at(m, line, t, &w, lane), t, before, until);
         }
         if (!more)
             break;
@@ -162,8 +172,9 @@ static void check_line(struct sr_medium m, const struct line *line, struct sr_rn
             for (int lane = 0; lane < SR_LAMBDA_COUNT; lane += 3) {
                 float sigma_t = sigma_t_at(m, line, t, &w, lane);
                 if (!(sigma_t <= s.majorant[lane]) || !(sigma_t >= 0))
-                    test_fail(__FILE__, __LINE__, "%s: sigma_t = %.9g is not below its majorant %.9g at t = %.9g in %.9g to %.9g", m.model->name,
-                              (double)sigma_t, (double)s.majorant[lane], t, (double)s.t0, (double)s.t1);
+                    test_fail(__FILE__, __LINE__,
+                              "%s: sigma_t = %.9g is not below its majorant %.9g at t = %.9g in %.9g to %.9g",
+                              m.model->name, (double)sigma_t, (double)s.majorant[lane], t, (double)s.t0, (double)s.t1);
             }
         }
         before = (double)s.t1;
@@ -236,11 +247,15 @@ TEST(transmittance_by_the_walk_is_that_of_sigma_t)
             struct line line;
             do
                 line = random_line(&rng, &transform);
-            while (line.out - line.in < 0.2 || depth_within(&line, (line.in + line.out) / 2) < 0.01); // in a face rounding decides
+            while (line.out - line.in < 0.2 ||
+                   depth_within(&line, (line.in + line.out) / 2) < 0.01); // in a face rounding decides
             enum { PIECES = 4000 };
             double depth = 0, step = (line.out - line.in) / PIECES;
             for (int j = 0; j <= PIECES; ++j)
-                depth += (j == 0 || j == PIECES ? 1 : j % 2 ? 4 : 2) * step / 3 * (double)sigma_t_at(m, &line, line.in + j * step, &w, 0);
+                depth += (j == 0 || j == PIECES ? 1
+                          : j % 2               ? 4
+                                                : 2) *
+                         step / 3 * (double)sigma_t_at(m, &line, line.in + j * step, &w, 0);
             struct sr_tally T = {0};
             for (int j = 0; j < 4000; ++j) {
                 struct sr_medium_walk walk;

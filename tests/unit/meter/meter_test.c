@@ -79,7 +79,8 @@ static double over_sphere(const struct sr_meter *m, float (*f)(const struct sr_m
         for (int i = 0; i < N; ++i)
             for (int k = 0; k < N; ++k) {
                 double s = sqrt(1 - z[i] * z[i]);
-                sum += wz[i] * wphi[k] * (double)f(m, (sr_vec3){(float)(s * cos(phi[k])), (float)(s * sin(phi[k])), (float)z[i]});
+                sum += wz[i] * wphi[k] *
+                       (double)f(m, (sr_vec3){(float)(s * cos(phi[k])), (float)(s * sin(phi[k])), (float)z[i]});
             }
     }
     return sum;
@@ -90,7 +91,8 @@ TEST(responses_of_bodies_read_pi_of_uniform_light)
     static const struct {
         const char *name;
         double extent;
-    } meters[] = {{"irradiance", 1}, {"cylindrical", 1}, {"semicylindrical", 1}, {"hemispherical", 1}, {"spherical", 1}, {"fluence", 4}};
+    } meters[] = {{"irradiance", 1},    {"cylindrical", 1}, {"semicylindrical", 1},
+                  {"hemispherical", 1}, {"spherical", 1},   {"fluence", 4}};
     for (size_t i = 0; i < sizeof meters / sizeof *meters; ++i) {
         struct made m = make(meters[i].name);
         EXPECT_RELATIVE(over_sphere(&m.meter, of_response), meters[i].extent * (double)SR_PI, 2e-4);
@@ -121,9 +123,12 @@ TEST(densities_of_directions_are_those_of_what_is_drawn)
         }
         for (int i = 0; i < CELLS * FINE * FINE; ++i) {
             int cell = i / (FINE * FINE), a = i % FINE, b = i / FINE % FINE;
-            double z = -1 + 2 * (cell / CELLS_PHI + (a + 0.5) / FINE) / CELLS_Z, phi = 2 * (double)SR_PI * (cell % CELLS_PHI + (b + 0.5) / FINE) / CELLS_PHI;
+            double z = -1 + 2 * (cell / CELLS_PHI + (a + 0.5) / FINE) / CELLS_Z,
+                   phi = 2 * (double)SR_PI * (cell % CELLS_PHI + (b + 0.5) / FINE) / CELLS_PHI;
             double s = sqrt(1 - z * z), area = 4 * (double)SR_PI / (CELLS * FINE * FINE);
-            expected[cell] += DRAWS * area * (double)of_pdf(&m.meter, (sr_vec3){(float)(s * cos(phi)), (float)(s * sin(phi)), (float)z});
+            expected[cell] +=
+                DRAWS * area *
+                (double)of_pdf(&m.meter, (sr_vec3){(float)(s * cos(phi)), (float)(s * sin(phi)), (float)z});
         }
         EXPECT_CHI2(seen, expected, CELLS);
         sr_arena_free(&m.arena);
@@ -140,7 +145,7 @@ TEST(responses_follow_their_definitions_in_single_directions)
     } meters[] = {
         {"irradiance", c, 0},
         {"cylindrical", s / (double)SR_PI, s / (double)SR_PI},
-        {"semicylindrical", s * (1 + cos(phi)) / (double)SR_PI, s *(1 + cos(phi)) / (double)SR_PI},
+        {"semicylindrical", s * (1 + cos(phi)) / (double)SR_PI, s * (1 + cos(phi)) / (double)SR_PI},
         {"hemispherical", (1 + c) / 4, (1 - c) / 4},
         {"spherical", 0.25, 0.25},
         {"fluence", 1, 1},
@@ -184,7 +189,8 @@ TEST(a_cone_takes_in_its_mean_and_nothing_beside_it)
         for (int k = 0; k < 1000; ++k) {
             sr_vec3 w;
             sr_u4 u = {sr_rng_float(&rng), sr_rng_float(&rng), 0, 0};
-            EXPECT_RELATIVE(m.model->sample(m.self, u, &w), 1 / omega, 2e-4); // 1 - cos keeps fewer digits here than there
+            EXPECT_RELATIVE(m.model->sample(m.self, u, &w), 1 / omega,
+                            2e-4); // 1 - cos keeps fewer digits here than there
             EXPECT(w.z > 0 || angles[i] > 89);
             EXPECT(sqrtf(w.x * w.x + w.y * w.y) <= sinf(a) * 1.0001f || angles[i] >= 90);
         }
@@ -238,11 +244,14 @@ TEST(a_spectrometer_counts_every_wavelength_once)
     static const double widths[] = {10, 10, 20, 5};
     for (int k = 0; k < 4; ++k) {
         struct sr_spectrometer s;
-        EXPECT_EQUAL_INT(sr_spectrometer_prepare(400, 10, 700, widths[k], k == 1 ? SR_BAND_RECTANGULAR : SR_BAND_TRIANGULAR, &s, &error), SR_OK);
+        EXPECT_EQUAL_INT(sr_spectrometer_prepare(400, 10, 700, widths[k],
+                                                 k == 1 ? SR_BAND_RECTANGULAR : SR_BAND_TRIANGULAR, &s, &error),
+                         SR_OK);
         EXPECT_EQUAL_INT(s.count, 31);
         struct sr_tally sums[31] = {0};
         for (uint32_t i = 0; i < 20000; ++i) {
-            struct sr_wavelengths w = sr_wavelengths_sample((struct sr_lambda_range){360, 830}, ((float)i + 0.5f) / 20000);
+            struct sr_wavelengths w =
+                sr_wavelengths_sample((struct sr_lambda_range){360, 830}, ((float)i + 0.5f) / 20000);
             double bins[31] = {0};
             sr_spectrum X = SR_BLACK; // 2e-3 lambda per nm
             for (int l = 0; l < SR_LAMBDA_COUNT; ++l)
@@ -281,7 +290,7 @@ TEST(colours_of_black_bodies_and_daylight_are_the_known_ones)
     }
     struct sr_spd D65 = sr_spd_named("stdillum-D65");
     colour_of_spd(&D65, c);
-    EXPECT_NEAR(c[SR_COLOUR_x], 0.31272, 2e-5);  // CIE 015:2018, table 5
+    EXPECT_NEAR(c[SR_COLOUR_x], 0.31272, 2e-5); // CIE 015:2018, table 5
     EXPECT_NEAR(c[SR_COLOUR_u], 0.19783, 2e-5);
     EXPECT_NEAR(c[SR_COLOUR_v], 0.46833, 3e-5);
     EXPECT_NEAR(c[SR_COLOUR_CCT], 6504, 1.5);
@@ -318,10 +327,12 @@ TEST(cells_of_a_goniophotometer_share_the_sphere)
     EXPECT_RELATIVE(all, 4 * (double)SR_PI, 1e-6);
     struct sr_rng rng = sr_rng_seed(3, 3);
     for (int i = 0; i < DRAWS; ++i)
-        seen[m.meter.model->far(m.meter.self, sr_warp_uniform_sphere((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)}))] += 1;
+        seen[m.meter.model->far(m.meter.self,
+                                sr_warp_uniform_sphere((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)}))] += 1;
     EXPECT_CHI2(seen, expected, CELLS);
     // gamma 90, C 0 and C 90: seen against the axis, against the clock
-    sr_vec3 axis = sr_normalize((sr_vec3){1, 2, 3}), facing = sr_normalize((sr_vec3){3, 0, -1}), left = sr_cross(facing, axis);
+    sr_vec3 axis = sr_normalize((sr_vec3){1, 2, 3}), facing = sr_normalize((sr_vec3){3, 0, -1}),
+            left = sr_cross(facing, axis);
     EXPECT_EQUAL_INT(m.meter.model->far(m.meter.self, facing), 18 * planes);
     EXPECT_EQUAL_INT(m.meter.model->far(m.meter.self, left), 18 * planes + 6);
     EXPECT_EQUAL_INT(m.meter.model->far(m.meter.self, axis), 0);

@@ -395,7 +395,8 @@ static bool comes_before(const char *text, const char *a, const char *b)
     return first && second && first < second;
 }
 
-/* The near side hides the far side: in the picture of two plates, the middle pixel is that of the one nearer the eye. */
+/* The near side hides the far side: in the picture of two plates, the middle pixel is that of the one nearer the eye.
+ */
 TEST(near_bodies_hide_far_ones)
 {
     static double lower[4][3] = {{-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}, {1, 1, 0}};
@@ -425,8 +426,19 @@ TEST(near_bodies_hide_far_ones)
 TEST(lamps_hang_and_maps_without_frames_keep_their_proportions)
 {
     struct sr_plot_panel two[] = {
-        {.kind = SR_PLOT_POLAR, .x = {.label = "γ", .unit = "°"}, .y = {.label = "I", .unit = "cd"}, .curves = lobes, .curve_count = 2, .points_down = true},
-        {.kind = SR_PLOT_MAP, .values = values, .rows = ROWS, .columns = COLUMNS, .has_no_frame = true, .has_contours = true, .z = {.label = "L_{v}", .unit = "cd/m^{2}"}},
+        {.kind = SR_PLOT_POLAR,
+         .x = {.label = "γ", .unit = "°"},
+         .y = {.label = "I", .unit = "cd"},
+         .curves = lobes,
+         .curve_count = 2,
+         .points_down = true},
+        {.kind = SR_PLOT_MAP,
+         .values = values,
+         .rows = ROWS,
+         .columns = COLUMNS,
+         .has_no_frame = true,
+         .has_contours = true,
+         .z = {.label = "L_{v}", .unit = "cd/m^{2}"}},
     };
     struct sr_plot_figure figure = {.panels = two, .panel_count = 2};
     struct sr_plot_check check;

@@ -5,7 +5,7 @@
 
 TEST(the_candela_holds_in_every_luminous_system)
 {
-    const double candela = 555.016; // [nm] 540 THz in standard air
+    const double candela = 555.016;                                   // [nm] 540 THz in standard air
     EXPECT_RELATIVE(sr_observer_at(SR_PHOTOPIC, candela), 683, 3e-6); // K_m is rounded from 683.0016
     EXPECT_RELATIVE(sr_observer_at(SR_SCOTOPIC, candela), 683, 1e-5);
     EXPECT_RELATIVE(sr_observer_at(SR_CONES_2, candela), 683, 1e-6);
@@ -16,8 +16,8 @@ TEST(efficacies_peak_where_the_cie_says)
 {
     EXPECT_NEAR(sr_observer_at(SR_PHOTOPIC, 555), 683, 0);
     EXPECT_NEAR(sr_observer_at(SR_SCOTOPIC, 507), 1700.05, 0.05);
-    EXPECT_NEAR(sr_observer_at(SR_CONES_2, 556), 683.358, 0.01);  // 683.358 lm/W of CIE 170-2:2015, whose table is finer
-    EXPECT_NEAR(sr_observer_at(SR_CONES_10, 556), 683.144, 0.04); // 683.144 lm/W
+    EXPECT_NEAR(sr_observer_at(SR_CONES_2, 556), 683.358, 0.01); // 683.358 lm/W of CIE 170-2:2015, whose table is finer
+    EXPECT_NEAR(sr_observer_at(SR_CONES_10, 556), 683.144, 0.04);                 // 683.144 lm/W
     EXPECT_RELATIVE(1e-3 * sr_observer_at(SR_PHOTOPIC, 532), 0.6044293192, 1e-7); // a laser of 1 mW [lm]
     for (double lambda = 300; lambda < 900; lambda += 0.37) {
         EXPECT(sr_observer_at(SR_SCOTOPIC, lambda) <= sr_observer_at(SR_SCOTOPIC, 507));
@@ -53,7 +53,8 @@ TEST(black_bodies_have_their_efficacies)
     struct sr_spd body = sr_spd_blackbody((float)T);
     double top = sr_planck(2.897771955e6 / T, T); // Planck's maximum, by Wien
     EXPECT_RELATIVE(top * sr_observer_integral(SR_PHOTOPIC, &body, 360, 830), luminance, 1e-5);
-    double ratio = sr_observer_integral(SR_SCOTOPIC, &body, 360, 830) / sr_observer_integral(SR_PHOTOPIC, &body, 360, 830);
+    double ratio =
+        sr_observer_integral(SR_SCOTOPIC, &body, 360, 830) / sr_observer_integral(SR_PHOTOPIC, &body, 360, 830);
     EXPECT_NEAR(ratio, 1.41, 0.01); // S/P ratio of illuminant A as lighting tables print it
 }
 
@@ -77,7 +78,8 @@ TEST(paths_estimate_the_integrals)
     for (int s = 0; s < SR_SYSTEM_COUNT; ++s) {
         double integral = 0; // trapezoids by 0.1 nm
         for (int i = 0; i <= 4700; ++i)
-            integral += 0.1 * (i % 4700 ? 1 : 0.5) * sr_observer_at((enum sr_system)s, 360 + 0.1 * i) * (double)sr_spd_at(&body, 360 + 0.1f * (float)i);
+            integral += 0.1 * (i % 4700 ? 1 : 0.5) * sr_observer_at((enum sr_system)s, 360 + 0.1 * i) *
+                        (double)sr_spd_at(&body, 360 + 0.1f * (float)i);
         EXPECT_RELATIVE(sums[s], integral, s == SR_PAR ? 5e-4 : 2e-5);
     }
     EXPECT_RELATIVE(sums[SR_PHOTOPIC], Y, 1e-6);

@@ -4,7 +4,8 @@
 #include "sample/sample.h"
 #include "test.h"
 
-static const enum sr_kind kinds[] = {SR_KIND_ENERGY, SR_KIND_FLUX, SR_KIND_FLUX_DENSITY, SR_KIND_INTENSITY, SR_KIND_RADIANCE, SR_KIND_EXPOSURE};
+static const enum sr_kind kinds[] = {SR_KIND_ENERGY,    SR_KIND_FLUX,     SR_KIND_FLUX_DENSITY,
+                                     SR_KIND_INTENSITY, SR_KIND_RADIANCE, SR_KIND_EXPOSURE};
 
 static const char *unit_name(struct sr_unit unit)
 {
@@ -19,14 +20,16 @@ static const char *name_of(enum sr_kind kind, enum sr_system system, bool is_spe
 
 static struct sr_quantity lux(double value, double u, double degrees)
 {
-    return (struct sr_quantity){.value = value, .u = u, .degrees = degrees, .unit = sr_unit_of(SR_KIND_FLUX_DENSITY, SR_PHOTOPIC, false)};
+    return (struct sr_quantity){
+        .value = value, .u = u, .degrees = degrees, .unit = sr_unit_of(SR_KIND_FLUX_DENSITY, SR_PHOTOPIC, false)};
 }
 
 TEST(units_have_their_names)
 {
     static const char *const radiometric[] = {"J", "W", "W/m^2", "W/sr", "W/(m^2 sr)", "J/m^2"};
     static const char *const photopic[] = {"lm s", "lm", "lx", "cd", "cd/m^2", "lx s"};
-    static const char *const photon[] = {"umol", "umol/s", "umol/(m^2 s)", "umol/(sr s)", "umol/(m^2 sr s)", "umol/m^2"};
+    static const char *const photon[] = {"umol",        "umol/s",          "umol/(m^2 s)",
+                                         "umol/(sr s)", "umol/(m^2 sr s)", "umol/m^2"};
     for (int i = 0; i < SR_KIND_COUNT; ++i) {
         EXPECT_EQUAL_TEXT(name_of(kinds[i], SR_RADIOMETRIC, false), radiometric[i]);
         EXPECT_EQUAL_TEXT(name_of(kinds[i], SR_PHOTOPIC, false), photopic[i]);
@@ -47,8 +50,10 @@ TEST(all_units_differ)
 {
     for (int a = 0; a < SR_KIND_COUNT * SR_SYSTEM_COUNT * 2; ++a)
         for (int b = 0; b < a; ++b) {
-            struct sr_unit x = sr_unit_of((enum sr_kind)(a / 2 % SR_KIND_COUNT), (enum sr_system)(a / 2 / SR_KIND_COUNT), a & 1);
-            struct sr_unit y = sr_unit_of((enum sr_kind)(b / 2 % SR_KIND_COUNT), (enum sr_system)(b / 2 / SR_KIND_COUNT), b & 1);
+            struct sr_unit x =
+                sr_unit_of((enum sr_kind)(a / 2 % SR_KIND_COUNT), (enum sr_system)(a / 2 / SR_KIND_COUNT), a & 1);
+            struct sr_unit y =
+                sr_unit_of((enum sr_kind)(b / 2 % SR_KIND_COUNT), (enum sr_system)(b / 2 / SR_KIND_COUNT), b & 1);
             char text[96];
             EXPECT(!sr_unit_equal(x, y));
             EXPECT(strcmp(sr_unit_text(x, text, sizeof text), unit_name(y)) != 0);
@@ -83,10 +88,15 @@ TEST(only_equal_units_are_added)
 
 TEST(geometry_turns_one_kind_into_another)
 {
-    struct sr_quantity L = {.value = 100, .u = 1, .degrees = 15, .unit = sr_unit_of(SR_KIND_RADIANCE, SR_PHOTOPIC, false)}, out;
+    struct sr_quantity L = {.value = 100,
+                            .u = 1,
+                            .degrees = 15,
+                            .unit = sr_unit_of(SR_KIND_RADIANCE, SR_PHOTOPIC, false)},
+                       out;
     struct sr_error error = {0};
     struct sr_unit sr = sr_unit_power(0, 1, 0), m2 = sr_unit_power(2, 0, 0), s = sr_unit_power(0, 0, 1);
-    EXPECT_EQUAL_INT(sr_quantity_times(&L, 0.5, sr, sr_unit_of(SR_KIND_FLUX_DENSITY, SR_PHOTOPIC, false), &out, &error), SR_OK);
+    EXPECT_EQUAL_INT(sr_quantity_times(&L, 0.5, sr, sr_unit_of(SR_KIND_FLUX_DENSITY, SR_PHOTOPIC, false), &out, &error),
+                     SR_OK);
     EXPECT_NEAR(out.value, 50, 0);
     EXPECT_NEAR(out.u, 0.5, 0);
     EXPECT_NEAR(out.degrees, 15, 0);
@@ -95,11 +105,14 @@ TEST(geometry_turns_one_kind_into_another)
     EXPECT_EQUAL_INT(sr_quantity_times(&E, 2, m2, sr_unit_of(SR_KIND_FLUX, SR_PHOTOPIC, false), &out, &error), SR_OK);
     EXPECT_EQUAL_TEXT(unit_name(out.unit), "lm");
     struct sr_quantity flux = out;
-    EXPECT_EQUAL_INT(sr_quantity_times(&flux, 60, s, sr_unit_of(SR_KIND_ENERGY, SR_PHOTOPIC, false), &out, &error), SR_OK);
+    EXPECT_EQUAL_INT(sr_quantity_times(&flux, 60, s, sr_unit_of(SR_KIND_ENERGY, SR_PHOTOPIC, false), &out, &error),
+                     SR_OK);
     EXPECT_EQUAL_TEXT(unit_name(out.unit), "lm s");
-    EXPECT_EQUAL_INT(sr_quantity_times(&L, 2, m2, sr_unit_of(SR_KIND_INTENSITY, SR_PHOTOPIC, false), &out, &error), SR_OK);
+    EXPECT_EQUAL_INT(sr_quantity_times(&L, 2, m2, sr_unit_of(SR_KIND_INTENSITY, SR_PHOTOPIC, false), &out, &error),
+                     SR_OK);
     EXPECT_EQUAL_TEXT(unit_name(out.unit), "cd");
-    EXPECT_EQUAL_INT(sr_quantity_times(&E, 2, sr, sr_unit_of(SR_KIND_FLUX, SR_PHOTOPIC, false), &out, &error), SR_ERROR_USAGE);
+    EXPECT_EQUAL_INT(sr_quantity_times(&E, 2, sr, sr_unit_of(SR_KIND_FLUX, SR_PHOTOPIC, false), &out, &error),
+                     SR_ERROR_USAGE);
     EXPECT(isnan(out.value));
     EXPECT_EQUAL_TEXT(error.text, "lx times sr is not lm");
 }
@@ -108,7 +121,8 @@ TEST(geometry_turns_one_kind_into_another)
 TEST(products_and_ratios_carry_their_uncertainty)
 {
     struct sr_quantity a = {.value = 683, .u = 5, .degrees = 20, .unit = sr_unit_of(SR_KIND_FLUX, SR_PHOTOPIC, false)};
-    struct sr_quantity b = {.value = 2, .u = 0.02, .degrees = 30, .unit = sr_unit_of(SR_KIND_FLUX, SR_RADIOMETRIC, false)};
+    struct sr_quantity b = {
+        .value = 2, .u = 0.02, .degrees = 30, .unit = sr_unit_of(SR_KIND_FLUX, SR_RADIOMETRIC, false)};
     struct sr_quantity ratio = sr_quantity_ratio(&a, &b), product = sr_quantity_product(&ratio, &b);
     EXPECT_EQUAL_TEXT(unit_name(ratio.unit), "lm/W");
     EXPECT_EQUAL_TEXT(unit_name(product.unit), "lm");
@@ -117,7 +131,8 @@ TEST(products_and_ratios_carry_their_uncertainty)
     enum { STEPS = 300 };
     for (int i = 0; i < STEPS; ++i)
         for (int j = 0; j < STEPS; ++j) {
-            double x = a.value + a.u * sr_normal_quantile((i + 0.5) / STEPS), y = b.value + b.u * sr_normal_quantile((j + 0.5) / STEPS);
+            double x = a.value + a.u * sr_normal_quantile((i + 0.5) / STEPS),
+                   y = b.value + b.u * sr_normal_quantile((j + 0.5) / STEPS);
             sr_tally_add(&tally, x / y);
             sr_tally_add(&times, x * y);
         }
@@ -132,7 +147,8 @@ TEST(products_and_ratios_carry_their_uncertainty)
 
 TEST(photons_over_watts_are_photons_of_a_joule)
 {
-    struct sr_quantity n = sr_quantity_exact(1, sr_unit_of(SR_KIND_FLUX, SR_PHOTON, false)), W = sr_quantity_exact(1, sr_unit_of(SR_KIND_FLUX, SR_RADIOMETRIC, false));
+    struct sr_quantity n = sr_quantity_exact(1, sr_unit_of(SR_KIND_FLUX, SR_PHOTON, false)),
+                       W = sr_quantity_exact(1, sr_unit_of(SR_KIND_FLUX, SR_RADIOMETRIC, false));
     EXPECT_EQUAL_TEXT(unit_name(sr_quantity_ratio(&n, &W).unit), "umol/J");
 }
 
@@ -148,7 +164,8 @@ TEST(values_are_rounded_to_their_uncertainty)
 {
     // k = 2.131449546 for 15 degrees
     EXPECT_EQUAL_TEXT(print(lux(19.8943678865, 0.01, 15)), "E = 19.894 lx ± 0.021 lx (95 %, k = 2.13, ν = 15)");
-    EXPECT_EQUAL_TEXT(print(lux(19.8943678865, 0.0467, 15)), "E = 19.89 lx ± 0.10 lx (95 %, k = 2.13, ν = 15)"); // U = 0.09954
+    EXPECT_EQUAL_TEXT(print(lux(19.8943678865, 0.0467, 15)),
+                      "E = 19.89 lx ± 0.10 lx (95 %, k = 2.13, ν = 15)"); // U = 0.09954
     EXPECT_EQUAL_TEXT(print(lux(123456.7, 560, 15)), "E = 123500 lx ± 1200 lx (95 %, k = 2.13, ν = 15)");
     EXPECT_EQUAL_TEXT(print(lux(123456.7, 6, 15)), "E = 123457 lx ± 13 lx (95 %, k = 2.13, ν = 15)");
     EXPECT_EQUAL_TEXT(print(lux(-2, 1, INFINITY)), "E = -2.0 lx ± 2.0 lx (95 %, k = 1.96, ν = ∞)");
@@ -238,8 +255,8 @@ TEST(the_jackknife_of_a_mean_is_the_mean)
     EXPECT_NEAR(q.degrees, 3, 0);
 }
 
-/* 1 + noise over 1 + the same and other noise: the plain ratio is too large by about its variance, the jackknife is not, and its interval
- * covers. */
+/* 1 + noise over 1 + the same and other noise: the plain ratio is too large by about its variance, the jackknife is
+ * not, and its interval covers. */
 TEST(the_jackknife_of_a_ratio_is_nearly_unbiased_and_covers)
 {
     enum { ROUNDS = 4000, R = 16 };
@@ -249,7 +266,8 @@ TEST(the_jackknife_of_a_ratio_is_nearly_unbiased_and_covers)
     for (int k = 0; k < ROUNDS; ++k) {
         double rows[2 * R], sum[2] = {0};
         for (int r = 0; r < R; ++r) {
-            double a = sr_normal_quantile((sr_rng_u32(&rng) + 0.5) * 0x1p-32), b = sr_normal_quantile((sr_rng_u32(&rng) + 0.5) * 0x1p-32);
+            double a = sr_normal_quantile((sr_rng_u32(&rng) + 0.5) * 0x1p-32),
+                   b = sr_normal_quantile((sr_rng_u32(&rng) + 0.5) * 0x1p-32);
             rows[2 * r] = 1 + 0.2 * a;
             rows[2 * r + 1] = 1 + 0.1 * a + 0.4 * b;
             sum[0] += rows[2 * r], sum[1] += rows[2 * r + 1];

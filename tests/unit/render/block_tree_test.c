@@ -70,7 +70,10 @@ TEST(any_cut_leaves_nodes_that_join_to_the_same_sum)
     for (uint32_t cut = 0; cut <= N; ++cut) {
         make(&pieces[0], 0, cut);
         make(&pieces[1], cut, N);
-        struct { struct sr_film_block b; uint32_t begin, size; } stack[2 * SR_BLOCK_TREE_NODES];
+        struct {
+            struct sr_film_block b;
+            uint32_t begin, size;
+        } stack[2 * SR_BLOCK_TREE_NODES];
         uint32_t depth = 0, at = 0;
         for (int p = 0; p < 2; ++p)
             for (uint32_t i = 0; i < pieces[p].depth; ++i) {
@@ -78,7 +81,9 @@ TEST(any_cut_leaves_nodes_that_join_to_the_same_sum)
                 EXPECT((size & (size - 1)) == 0 && at % size == 0); // a node of the tree
                 stack[depth].b = pieces[p].nodes[i], stack[depth].begin = at, stack[depth++].size = size;
                 at += size;
-                for (; depth > 1 && stack[depth - 1].size == stack[depth - 2].size && stack[depth - 2].begin % (2 * stack[depth - 2].size) == 0; --depth) {
+                for (; depth > 1 && stack[depth - 1].size == stack[depth - 2].size &&
+                       stack[depth - 2].begin % (2 * stack[depth - 2].size) == 0;
+                     --depth) {
                     sr_film_block_join(&stack[depth - 2].b, &stack[depth - 1].b);
                     stack[depth - 2].size *= 2;
                 }

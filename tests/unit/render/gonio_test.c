@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* The gonioreflectometer against what is known: a flat Lambertian patch, grooves of mirrors, a random surface of mirrors and the
- * microfacet model. */
+/* The gonioreflectometer against what is known: a flat Lambertian patch, grooves of mirrors, a random surface of
+ * mirrors and the microfacet model. */
 #include "import/import.h"
 #include "render/render.h"
 #include "test.h"
@@ -18,7 +18,8 @@ static struct sr_import_result world(const char *text)
     struct sr_import_result result;
     char path[512];
     snprintf(path, sizeof path, "%s/gonio.pbrt", test_folder());
-    if (sr_file_write(path, text, strlen(text), &error) != SR_OK || sr_import_pbrt(path, &options, &result, &silent, &error) != SR_OK)
+    if (sr_file_write(path, text, strlen(text), &error) != SR_OK ||
+        sr_import_pbrt(path, &options, &result, &silent, &error) != SR_OK)
         test_fail(__FILE__, __LINE__, "%s", error.text);
     return result;
 }
@@ -30,8 +31,14 @@ static struct sr_gonio gonio(const struct sr_import_result *w, uint32_t samples)
 
 static struct sr_gonio_beam beam(double half, double theta_deg, double phi_deg, uint32_t thetas, uint32_t phis)
 {
-    struct sr_gonio_beam b = {.x0 = -half, .x1 = half, .y0 = -half, .y1 = half, .theta_i = (float)(theta_deg * PI / 180), .phi_i = (float)(phi_deg * PI / 180),
-                              .theta_count = thetas, .phi_count = phis};
+    struct sr_gonio_beam b = {.x0 = -half,
+                              .x1 = half,
+                              .y0 = -half,
+                              .y1 = half,
+                              .theta_i = (float)(theta_deg * PI / 180),
+                              .phi_i = (float)(phi_deg * PI / 180),
+                              .theta_count = thetas,
+                              .phi_count = phis};
     for (int i = 0; i < SR_LAMBDA_COUNT; ++i)
         b.lambda[i] = 400 + 320.0f / SR_LAMBDA_COUNT * (float)i;
     return b;
@@ -92,8 +99,10 @@ TEST(right_angled_grooves_of_mirrors_reflect_twice)
     char *at = text.data;
     at += sprintf(at, "WorldBegin\n" MIRROR);
     for (int k = -10; k < 10; ++k)
-        at += sprintf(at, "Shape \"bilinearmesh\" \"point3 P\" [%d -50 0  %g -50 -0.5  %d 50 0  %g 50 -0.5]\nShape \"bilinearmesh\" \"point3 P\" [%g -50 -0.5  %d -50 0  %g 50 -0.5  %d 50 0]\n",
-                      k, k + 0.5, k, k + 0.5, k + 0.5, k + 1, k + 0.5, k + 1);
+        at += sprintf(
+            at,
+            "Shape \"bilinearmesh\" \"point3 P\" [%d -50 0  %g -50 -0.5  %d 50 0  %g 50 -0.5]\nShape \"bilinearmesh\" \"point3 P\" [%g -50 -0.5  %d -50 0  %g 50 -0.5  %d 50 0]\n",
+            k, k + 0.5, k, k + 0.5, k + 0.5, k + 1, k + 0.5, k + 1);
     struct sr_import_result w = world(text.data);
     struct sr_arena arena = {0};
     struct sr_gonio g = gonio(&w, 1000);
@@ -102,12 +111,15 @@ TEST(right_angled_grooves_of_mirrors_reflect_twice)
     for (int k = 0; k < 3; ++k) {
         struct sr_gonio_beam b = beam(3, in[k][0], in[k][1], 9, 8);
         struct sr_gonio_scatter s = scatter(&g, &b, &arena);
-        double x = -sin(in[k][0] * PI / 180) * cos(in[k][1] * PI / 180), y = sin(in[k][0] * PI / 180) * sin(in[k][1] * PI / 180);
+        double x = -sin(in[k][0] * PI / 180) * cos(in[k][1] * PI / 180),
+               y = sin(in[k][0] * PI / 180) * sin(in[k][1] * PI / 180);
         double phi = fmod(atan2(-y, -x) * 180 / PI + 360, 360); // x back to where it came from, y mirrored
         size_t cell = (size_t)(in[k][0] / 10) * 8 + (size_t)(phi / 45);
-        double lower = sin((floor(in[k][0] / 10)) * PI / 18), upper = sin((floor(in[k][0] / 10) + 1) * PI / 18), projected = PI / 4 * (upper * upper - lower * lower) / 2;
+        double lower = sin((floor(in[k][0] / 10)) * PI / 18), upper = sin((floor(in[k][0] / 10) + 1) * PI / 18),
+               projected = PI / 4 * (upper * upper - lower * lower) / 2;
         EXPECT_NEAR(s.reflected[0], 1, 4e-3); // two reflections of a metal that is nearly perfect
-        EXPECT_RELATIVE(s.f[cell * SR_LAMBDA_COUNT] * projected, s.reflected[0], k == 0 ? 0.15 : 1e-3); // askew, some leave after one
+        EXPECT_RELATIVE(s.f[cell * SR_LAMBDA_COUNT] * projected, s.reflected[0],
+                        k == 0 ? 0.15 : 1e-3); // askew, some leave after one
         EXPECT_NEAR(s.missed, 0, 0);
     }
     sr_array_free(&text);
@@ -115,8 +127,9 @@ TEST(right_angled_grooves_of_mirrors_reflect_twice)
     sr_import_result_free(&w);
 }
 
-/* Heights of a grid, normally distributed: the slopes of its triangles are normal, too, with variance 2 s^2 / d^2 along x and
- * y and covariance s^2 / d^2. Without shadows f = P(p, q) / (4 cos_theta_i cos_theta_o cos_theta_h^4), per projected area. */
+/* Heights of a grid, normally distributed: the slopes of its triangles are normal, too, with variance 2 s^2 / d^2 along
+ * x and y and covariance s^2 / d^2. Without shadows f = P(p, q) / (4 cos_theta_i cos_theta_o cos_theta_h^4), per
+ * projected area. */
 TEST(random_mirrors_scatter_as_the_microfacet_model_says)
 {
     enum { N = 56, THETAS = 15, PHIS = 8 };
@@ -148,7 +161,9 @@ TEST(random_mirrors_scatter_as_the_microfacet_model_says)
     // what each facet of these does, and what the model says of them all, in the same cells
     static double exact[THETAS * PHIS], model[THETAS * PHIS];
     memset(exact, 0, sizeof exact), memset(model, 0, sizeof model);
-    double wi[3] = {sin(12 * PI / 180) * cos(20 * PI / 180), sin(12 * PI / 180) * sin(20 * PI / 180), cos(12 * PI / 180)}, facets = 0;
+    double wi[3] = {sin(12 * PI / 180) * cos(20 * PI / 180), sin(12 * PI / 180) * sin(20 * PI / 180),
+                    cos(12 * PI / 180)},
+           facets = 0;
     enum { Q = 300 };
     double variance = 2 * s * s / (d * d);
     for (int pass = 0; pass < 2; ++pass)
@@ -183,11 +198,17 @@ TEST(random_mirrors_scatter_as_the_microfacet_model_says)
     EXPECT_NEAR(measured.reflected[0], 1, 2e-3);
     int tested = 0;
     for (size_t c = 0; c < THETAS * PHIS; ++c) {
-        double lower = sin(PI / 2 * (double)(c / PHIS) / THETAS), upper = sin(PI / 2 * (double)(c / PHIS + 1) / THETAS), projected = PI / PHIS * (upper * upper - lower * lower);
-        double share = measured.f[c * SR_LAMBDA_COUNT] * projected, error = measured.f_error[c * SR_LAMBDA_COUNT] * projected;
+        double lower = sin(PI / 2 * (double)(c / PHIS) / THETAS), upper = sin(PI / 2 * (double)(c / PHIS + 1) / THETAS),
+               projected = PI / PHIS * (upper * upper - lower * lower);
+        double share = measured.f[c * SR_LAMBDA_COUNT] * projected,
+               error = measured.f_error[c * SR_LAMBDA_COUNT] * projected;
         double facet = exact[c] / sum_exact, law = model[c] / sum_model;
-        EXPECT_NEAR(share, facet, 6 * error + 0.01 * facet + 1e-4); // the beam's edge cuts other facets than the sum's; G is not quite 1
-        EXPECT_NEAR(share, law, 6 * error + 5 * sqrt(2 * law / facets) + 1e-4); // facets share vertices: half as many are independent
+        EXPECT_NEAR(share, facet,
+                    6 * error + 0.01 * facet +
+                        1e-4); // the beam's edge cuts other facets than the sum's; G is not quite 1
+        EXPECT_NEAR(share, law,
+                    6 * error + 5 * sqrt(2 * law / facets) +
+                        1e-4); // facets share vertices: half as many are independent
         tested += law > 0.01;
     }
     EXPECT(tested >= 12);

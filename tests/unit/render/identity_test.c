@@ -7,11 +7,20 @@ static const char small[] = "hash 0123\nunits si\n";
 
 static struct sr_render_job ordinary(void)
 {
-    static struct { int32_t max_depth; float rest[16]; } self = {.max_depth = 5};
-    static struct { float fov[64]; } sensor;
+    static struct {
+        int32_t max_depth;
+        float rest[16];
+    } self = {.max_depth = 5};
+    static struct {
+        float fov[64];
+    } sensor;
     const struct sr_integrator_model *path = sr_integrator_model_find("path");
-    return (struct sr_render_job){.seed = 1, .spp = 16, .integrator = {path, &self}, .sensor = {sr_sensor_models[0], &sensor},
-                                  .film = {.width = 8, .height = 8, .x1 = 8, .y1 = 8, .exposure_time = 1, .iso = 100}, .lambda = {360, 830}};
+    return (struct sr_render_job){.seed = 1,
+                                  .spp = 16,
+                                  .integrator = {path, &self},
+                                  .sensor = {sr_sensor_models[0], &sensor},
+                                  .film = {.width = 8, .height = 8, .x1 = 8, .y1 = 8, .exposure_time = 1, .iso = 100},
+                                  .lambda = {360, 830}};
 }
 
 static void expect_differs(const char *a, const char *b, const char *key, const char *theirs, const char *ours)
@@ -29,7 +38,8 @@ TEST(what_makes_the_bytes_stands_in_the_identity)
     struct sr_render_job job = ordinary();
     struct sr_render_difference d;
     const char *first = sr_render_identity(&arena, &job, small);
-    EXPECT(first && strstr(first, "scene.hash 0123\nscene.units si\n") && strstr(first, "\nspp 16\n") && strstr(first, "\nestimator.maxdepth 5\n"));
+    EXPECT(first && strstr(first, "scene.hash 0123\nscene.units si\n") && strstr(first, "\nspp 16\n") &&
+           strstr(first, "\nestimator.maxdepth 5\n"));
     job.threads = 7;
     job.tile = 3;
     EXPECT(!sr_render_identity_differs(first, sr_render_identity(&arena, &job, small), &d));

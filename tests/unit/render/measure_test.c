@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Measuring as statistics: no bias from stopping, intervals that cover, the same numbers from any threads, and plain words
- * where nothing can be trusted. */
+/* Measuring as statistics: no bias from stopping, intervals that cover, the same numbers from any threads, and plain
+ * words where nothing can be trusted. */
 #include "import/import.h"
 #include "render/render.h"
 #include "test.h"
@@ -17,10 +17,15 @@ static struct bench bench_of(const char *text)
     char path[512];
     struct sr_error error = {0};
     snprintf(path, sizeof path, "%s/bench.pbrt", test_folder());
-    if (sr_file_write(path, text, strlen(text), &error) != SR_OK || sr_import_pbrt(path, NULL, &b.scene, NULL, &error) != SR_OK)
+    if (sr_file_write(path, text, strlen(text), &error) != SR_OK ||
+        sr_import_pbrt(path, NULL, &b.scene, NULL, &error) != SR_OK)
         test_fail(__FILE__, __LINE__, "%s", error.text);
-    b.job = (struct sr_render_job){.scene = b.scene.scene, .integrator = b.scene.integrator, .sampler = b.scene.sampler, .seed = 1,
-                                   .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX}, .jitter_lambda = true};
+    b.job = (struct sr_render_job){.scene = b.scene.scene,
+                                   .integrator = b.scene.integrator,
+                                   .sampler = b.scene.sampler,
+                                   .seed = 1,
+                                   .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
+                                   .jitter_lambda = true};
     return b;
 }
 
@@ -40,7 +45,7 @@ static struct sr_measurement measure(struct bench *b, struct sr_measure_settings
 }
 
 /* Light from 1 % of the directions' measure: a disk that glows with 100 and is met by chance alone, so that E = pi. */
-#define RARE                                                                                                              \
+#define RARE                                                                                                             \
     "Sampler \"independent\" Integrator \"simplepath\" \"bool samplelights\" false \"integer maxdepth\" 0\nWorldBegin\n" \
     "AreaLightSource \"diffuse\" \"float scale\" 100 \"bool twosided\" true\n"                                           \
     "Shape \"disk\" \"float height\" 1 \"float radius\" 0.10050378152592121\n"                                           \
@@ -65,7 +70,8 @@ TEST(a_target_is_reached_without_bias_where_one_path_in_a_hundred_brings_light)
         // what stopping at the first good look would have done: rounds of 16, the error of 16 samples looked at
         struct sr_tally looked = {0};
         for (uint32_t k = 0; k < 64; ++k) {
-            struct sr_measure_settings little = {.samples = 16, .replicates = 16, .stream = i * 64 + k + 100000, .system = SR_PHOTOPIC};
+            struct sr_measure_settings little = {
+                .samples = 16, .replicates = 16, .stream = i * 64 + k + 100000, .system = SR_PHOTOPIC};
             struct sr_measurement one = measure(&b, little, SR_OK);
             sr_tally_add(&looked, one.value[SR_PHOTOPIC].value);
             if (k >= 1 && sr_tally_standard_error(&looked) <= 0.1 * looked.mean)
@@ -73,8 +79,9 @@ TEST(a_target_is_reached_without_bias_where_one_path_in_a_hundred_brings_light)
         }
         sr_tally_add(&naive, looked.mean);
     }
-    printf("  mean / truth %.4f +- %.4f, covered %.3f, on target %.2f; naive %.3f +- %.3f\n", mean.mean / pi, sr_tally_standard_error(&mean) / pi,
-           covered / (double)RUNS, on_target / (double)RUNS, naive.mean / pi, sr_tally_standard_error(&naive) / pi);
+    printf("  mean / truth %.4f +- %.4f, covered %.3f, on target %.2f; naive %.3f +- %.3f\n", mean.mean / pi,
+           sr_tally_standard_error(&mean) / pi, covered / (double)RUNS, on_target / (double)RUNS, naive.mean / pi,
+           sr_tally_standard_error(&naive) / pi);
     EXPECT_MEAN(mean, pi);
     EXPECT(covered >= 0.9 * RUNS); // 95 % nominal
     EXPECT(on_target >= 0.8 * RUNS);
@@ -84,8 +91,9 @@ TEST(a_target_is_reached_without_bias_where_one_path_in_a_hundred_brings_light)
 
 TEST(threads_change_no_bit_and_streams_are_independent)
 {
-    struct bench b = bench_of("WorldBegin LightSource \"point\" \"point3 from\" [0 0 2]\n"
-                              "AreaLightSource \"diffuse\" Shape \"sphere\" \"float radius\" 3\n#@ Meter \"spherical\" \"point3 p\" [0 1 0]\n");
+    struct bench b = bench_of(
+        "WorldBegin LightSource \"point\" \"point3 from\" [0 0 2]\n"
+        "AreaLightSource \"diffuse\" Shape \"sphere\" \"float radius\" 3\n#@ Meter \"spherical\" \"point3 p\" [0 1 0]\n");
     struct sr_measure_settings s = {.samples = 20000, .system = SR_PHOTOPIC};
     sr_spectrometer_prepare(400, 10, 700, NAN, SR_BAND_TRIANGULAR, &s.spectrometer, NULL);
     struct sr_measurement first = {0}, m;
@@ -95,7 +103,8 @@ TEST(threads_change_no_bit_and_streams_are_independent)
         if (threads == 1)
             first = m;
         for (int i = 0; i < SR_SYSTEM_COUNT; ++i)
-            EXPECT(memcmp(&m.value[i].value, &first.value[i].value, sizeof(double)) == 0 && memcmp(&m.value[i].u, &first.value[i].u, sizeof(double)) == 0);
+            EXPECT(memcmp(&m.value[i].value, &first.value[i].value, sizeof(double)) == 0 &&
+                   memcmp(&m.value[i].u, &first.value[i].u, sizeof(double)) == 0);
         EXPECT(memcmp(m.spectrum, first.spectrum, 31 * sizeof *m.spectrum) == 0);
     }
     s.stream = 1;
@@ -124,8 +133,9 @@ TEST(nothing_found_is_a_bound_and_a_sentence)
     bench_free(&b);
 
     // a lamp outside of a closed ball; the brightest light everywhere would read pi 7
-    b = bench_of("WorldBegin Shape \"sphere\"\nAreaLightSource \"diffuse\" \"float scale\" 7 Translate 0 0 3 Shape \"disk\"\n"
-                 "CoordSysTransform \"world\"\n#@ Meter \"spherical\" \"point3 p\" [0 0 0.2]\n");
+    b = bench_of(
+        "WorldBegin Shape \"sphere\"\nAreaLightSource \"diffuse\" \"float scale\" 7 Translate 0 0 3 Shape \"disk\"\n"
+        "CoordSysTransform \"world\"\n#@ Meter \"spherical\" \"point3 p\" [0 0 0.2]\n");
     m = measure(&b, s, SR_OK);
     EXPECT(says(&m, "no light found in 4096 samples; below") && says(&m, "inside shape number 1"));
     EXPECT_RELATIVE(m.value[SR_PHOTOPIC].upper, 3 * pi * 7 / 4096, 1e-3);
@@ -134,7 +144,8 @@ TEST(nothing_found_is_a_bound_and_a_sentence)
     bench_free(&b);
 
     // what a delta light would bring is not known
-    b = bench_of("WorldBegin Shape \"sphere\"\nLightSource \"point\" \"point3 from\" [0 0 3]\n#@ Meter \"spherical\"\n");
+    b = bench_of(
+        "WorldBegin Shape \"sphere\"\nLightSource \"point\" \"point3 from\" [0 0 3]\n#@ Meter \"spherical\"\n");
     m = measure(&b, s, SR_OK);
     EXPECT(says(&m, "there is no bound") && !(m.value[SR_PHOTOPIC].upper > 0));
     bench_free(&b);
@@ -148,15 +159,17 @@ TEST(what_cannot_be_trusted_is_told)
     EXPECT(says(&m, "samples have found light"));
     bench_free(&b);
     // most of the light comes from one direction in a thousand, the rest from everywhere
-    b = bench_of("Sampler \"independent\" Integrator \"simplepath\" \"bool samplelights\" false \"integer maxdepth\" 0\nWorldBegin\n"
-                 "LightSource \"infinite\" \"float scale\" 0.01\n"
-                 "AreaLightSource \"diffuse\" \"float scale\" 3000 \"bool twosided\" true Shape \"disk\" \"float height\" 1 \"float radius\" 0.03\n"
-                 "#@ Meter \"irradiance\"\n");
+    b = bench_of(
+        "Sampler \"independent\" Integrator \"simplepath\" \"bool samplelights\" false \"integer maxdepth\" 0\nWorldBegin\n"
+        "LightSource \"infinite\" \"float scale\" 0.01\n"
+        "AreaLightSource \"diffuse\" \"float scale\" 3000 \"bool twosided\" true Shape \"disk\" \"float height\" 1 \"float radius\" 0.03\n"
+        "#@ Meter \"irradiance\"\n");
     m = measure(&b, s, SR_OK);
     EXPECT(says(&m, "of the reading: the interval cannot be trusted"));
     bench_free(&b);
-    b = bench_of("WorldBegin LightSource \"infinite\" Material \"diffuse\" Shape \"disk\" \"float height\" 0.00001 \"float radius\" 0.2\n"
-                 "Shape \"disk\" \"float height\" -3\n#@ Meter \"irradiance\"\n");
+    b = bench_of(
+        "WorldBegin LightSource \"infinite\" Material \"diffuse\" Shape \"disk\" \"float height\" 0.00001 \"float radius\" 0.2\n"
+        "Shape \"disk\" \"float height\" -3\n#@ Meter \"irradiance\"\n");
     m = measure(&b, s, SR_OK);
     EXPECT(says(&m, "other side"));
     bench_free(&b);
@@ -190,8 +203,9 @@ TEST(a_cancelled_measurement_is_what_there_is)
 
 TEST(maps_are_their_cells)
 {
-    struct bench b = bench_of("WorldBegin LightSource \"point\" \"point3 from\" [0 0 1] \"float power\" 12.566370614359172\n"
-                              "#@ Meter \"irradiancemap\" \"point3 p\" [-1 -1 0] \"vector3 u\" [4 0 0] \"vector3 v\" [0 2 0] \"integer nx\" 8 \"integer ny\" 3\n");
+    struct bench b = bench_of(
+        "WorldBegin LightSource \"point\" \"point3 from\" [0 0 1] \"float power\" 12.566370614359172\n"
+        "#@ Meter \"irradiancemap\" \"point3 p\" [-1 -1 0] \"vector3 u\" [4 0 0] \"vector3 v\" [0 2 0] \"integer nx\" 8 \"integer ny\" 3\n");
     struct sr_image *image;
     struct sr_error error = {0};
     struct sr_measure_settings s = {.system = SR_PHOTOPIC};
@@ -215,10 +229,12 @@ TEST(maps_are_their_cells)
 
 TEST(maps_of_shapes_follow_their_texture_coordinates)
 {
-    // a ball of radius 2 around the origin in the light of a distant source from +z, E = 10: 10 cos(theta) outside, by v = theta
-    struct bench b = bench_of("WorldBegin LightSource \"distant\" \"float illuminance\" 10 \"point3 from\" [0 0 1] \"point3 to\" [0 0 0]\n"
-                              "#@ Name \"ball\"\nShape \"sphere\" \"float radius\" 2\n"
-                              "#@ Meter \"irradiancemap\" \"string surface\" \"ball\" \"integer nx\" 3 \"integer ny\" 6\n");
+    // a ball of radius 2 around the origin in the light of a distant source from +z, E = 10: 10 cos(theta) outside, by
+    // v = theta
+    struct bench b = bench_of(
+        "WorldBegin LightSource \"distant\" \"float illuminance\" 10 \"point3 from\" [0 0 1] \"point3 to\" [0 0 0]\n"
+        "#@ Name \"ball\"\nShape \"sphere\" \"float radius\" 2\n"
+        "#@ Meter \"irradiancemap\" \"string surface\" \"ball\" \"integer nx\" 3 \"integer ny\" 6\n");
     struct sr_image *image;
     struct sr_error error = {0};
     struct sr_measure_settings s = {.system = SR_PHOTOPIC, .samples = 4096};
@@ -227,7 +243,8 @@ TEST(maps_of_shapes_follow_their_texture_coordinates)
     for (uint32_t j = 0; j < 6; ++j)
         for (uint32_t i = 0; i < 3; ++i) {
             // v runs from the pole at -z: mean of max(0, -cos) over the band of theta = pi v
-            double a = pi * j / 6, z0 = cos(a), z1 = cos(a + pi / 6), E = j < 3 ? 0 : 10 * (z1 * z1 - z0 * z0) / 2 / (z0 - z1);
+            double a = pi * j / 6, z0 = cos(a), z1 = cos(a + pi / 6),
+                   E = j < 3 ? 0 : 10 * (z1 * z1 - z0 * z0) / 2 / (z0 - z1);
             const float *pixel = image->floats + sr_image_index(image, i, 5 - j);
             EXPECT_NEAR(pixel[0], E, 6 * (double)pixel[1] + 1e-5);
             EXPECT(pixel[1] < 0.05f);

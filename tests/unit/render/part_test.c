@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-/* Parts of a picture: any partition of the samples, rendered by any threads and tiles, merged in any order, is the picture of one
- * render, to the last bit; what does not belong together is refused. */
+/* Parts of a picture: any partition of the samples, rendered by any threads and tiles, merged in any order, is the
+ * picture of one render, to the last bit; what does not belong together is refused. */
 #include "import/import.h"
 #include "render/render.h"
 #include "store/store.h"
 #include "test.h"
 
-#define FILM(name) "Film \"" name "\" \"integer xresolution\" 13 \"integer yresolution\" 9 \"string filename\" \"p.exr\"\n"
+#define FILM(name)                                                                                                     \
+    "Film \"" name "\" \"integer xresolution\" 13 \"integer yresolution\" 9 \"string filename\" \"p.exr\"\n"
 #define SOBOL "Sampler \"sobol\" \"integer pixelsamples\" 64\n"
 static const char front[] = "LookAt 0 3 -4  0 0.4 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\n";
 static const char room[] =
@@ -25,16 +26,29 @@ static struct sr_import_result world(const char *settings)
     char path[512], text[4096];
     snprintf(path, sizeof path, "%s/part.pbrt", test_folder());
     snprintf(text, sizeof text, "%s%s%s", front, settings, room);
-    if (sr_file_write(path, text, strlen(text), &error) != SR_OK || sr_import_pbrt(path, &options, &result, &silent, &error) != SR_OK)
+    if (sr_file_write(path, text, strlen(text), &error) != SR_OK ||
+        sr_import_pbrt(path, &options, &result, &silent, &error) != SR_OK)
         test_fail(__FILE__, __LINE__, "%s", error.text);
     return result;
 }
 
 static struct sr_render_job job_of(const struct sr_import_result *w, uint32_t replicates)
 {
-    return (struct sr_render_job){.scene = w->scene, .sensor = w->sensor, .filter = w->filter, .integrator = w->integrator, .film = w->film, .sampler = w->sampler,
-                                  .seed = 4, .spp = w->spp, .replicates = replicates, .lambda = {360, 830}, .jitter_pixel = true, .jitter_lambda = true,
-                                  .with_aov = true, .threads = 2, .tile = 5};
+    return (struct sr_render_job){.scene = w->scene,
+                                  .sensor = w->sensor,
+                                  .filter = w->filter,
+                                  .integrator = w->integrator,
+                                  .film = w->film,
+                                  .sampler = w->sampler,
+                                  .seed = 4,
+                                  .spp = w->spp,
+                                  .replicates = replicates,
+                                  .lambda = {360, 830},
+                                  .jitter_pixel = true,
+                                  .jitter_lambda = true,
+                                  .with_aov = true,
+                                  .threads = 2,
+                                  .tile = 5};
 }
 
 static struct sr_render_part *part_of(const struct sr_render_job *job, uint32_t begin, uint32_t end)
@@ -57,7 +71,8 @@ static struct sr_render_part *written_and_read(struct sr_render_part *part)
     struct sr_render_part *again = NULL;
     char path[512];
     snprintf(path, sizeof path, "%s/part.srp", test_folder());
-    if (sr_render_part_write(part, "key value\n", "name text\n", path, &error) != SR_OK || sr_render_part_read(path, &again, &error) != SR_OK)
+    if (sr_render_part_write(part, "key value\n", "name text\n", path, &error) != SR_OK ||
+        sr_render_part_read(path, &again, &error) != SR_OK)
         test_fail(__FILE__, __LINE__, "%s", error.text);
     EXPECT_EQUAL_TEXT(sr_render_part_identity(again), "key value\n");
     EXPECT_EQUAL_TEXT(sr_render_part_about(again), "name text\n");
@@ -82,7 +97,8 @@ static void expect_same(const struct sr_film *a, const struct sr_film *b)
 }
 
 /* Cuts at the numbers of `cuts`, which begin with 0 and end with spp, merged from `start` on in steps of `step`. */
-static void expect_partition_is_whole(const struct sr_render_job *job, const struct sr_film *whole, const uint32_t *cuts, uint32_t pieces, uint32_t start, uint32_t step)
+static void expect_partition_is_whole(const struct sr_render_job *job, const struct sr_film *whole,
+                                      const uint32_t *cuts, uint32_t pieces, uint32_t start, uint32_t step)
 {
     struct sr_error error = {0};
     struct sr_render_part *all = NULL;
@@ -144,7 +160,8 @@ TEST(any_partition_of_replicates_is_the_whole)
 
 TEST(any_partition_of_independent_samples_is_the_whole)
 {
-    expect_any_partition_is_whole("Integrator \"path\"\nSampler \"independent\" \"integer pixelsamples\" 64\n" FILM("gbuffer"), 0, false);
+    expect_any_partition_is_whole(
+        "Integrator \"path\"\nSampler \"independent\" \"integer pixelsamples\" 64\n" FILM("gbuffer"), 0, false);
 }
 
 TEST(any_partition_of_spectra_is_the_whole)
@@ -220,10 +237,12 @@ static void expect_resumed_parts_are_whole(const char *settings, uint32_t replic
     part = part_of(&job, 21, 64);
     EXPECT(sr_render_part_checkpoint(&job, part, &report, &error) == SR_OK);
     sr_render_part_destroy(part);
-    EXPECT(sr_render_samples(&job, (struct sr_render_range){21, 64}, &part, &report, &error) == SR_OK && report.kept.resumed_share == 1);
+    EXPECT(sr_render_samples(&job, (struct sr_render_range){21, 64}, &part, &report, &error) == SR_OK &&
+           report.kept.resumed_share == 1);
     sr_render_part_destroy(part);
     keep.identity = "samples 21-60\n";
-    EXPECT(sr_render_samples(&job, (struct sr_render_range){21, 60}, &part, &report, &error) == SR_ERROR_INPUT && strstr(error.text, "samples"));
+    EXPECT(sr_render_samples(&job, (struct sr_render_range){21, 60}, &part, &report, &error) == SR_ERROR_INPUT &&
+           strstr(error.text, "samples"));
     sr_render_forget(&keep);
     sr_render_part_destroy(all);
     sr_film_destroy(whole);
@@ -239,7 +258,8 @@ TEST(interrupted_parts_go_on_to_the_same_sums)
 
 /* ---- what is refused ---- */
 
-static const char plain[] = "Integrator \"path\" \"integer maxdepth\" 2\nSampler \"sobol\" \"integer pixelsamples\" 10\n" FILM("rgb");
+static const char plain[] =
+    "Integrator \"path\" \"integer maxdepth\" 2\nSampler \"sobol\" \"integer pixelsamples\" 10\n" FILM("rgb");
 
 TEST(blocks_that_are_no_full_trees_are_folded_as_one_render_does)
 {
@@ -271,7 +291,8 @@ TEST(ranges_that_make_no_sense_are_refused)
     }
     struct sr_error error = {0};
     job.adaptive.is_on = true;
-    EXPECT(sr_render_samples(&job, (struct sr_render_range){0, 5}, &part, &report, &error) == SR_ERROR_USAGE && strstr(error.text, "adaptive"));
+    EXPECT(sr_render_samples(&job, (struct sr_render_range){0, 5}, &part, &report, &error) == SR_ERROR_USAGE &&
+           strstr(error.text, "adaptive"));
     sr_import_result_free(&w);
 }
 
@@ -355,9 +376,11 @@ TEST(files_that_lie_are_refused)
             EXPECT(sr_store_finish(out, false, &error) == SR_OK);
             struct sr_error told = {0};
             ++tried;
-            if (sr_render_part_read(lie, &again, &told) == SR_OK) { // numbers that only describe the picture: it can be had
+            if (sr_render_part_read(lie, &again, &told) ==
+                SR_OK) { // numbers that only describe the picture: it can be had
                 struct sr_image *image;
-                EXPECT(sr_render_image(sr_render_part_film(again), true, sr_render_part_is_replicated(again), &image, &told) == SR_OK);
+                EXPECT(sr_render_image(sr_render_part_film(again), true, sr_render_part_is_replicated(again), &image,
+                                       &told) == SR_OK);
                 sr_image_free(image);
                 sr_render_part_destroy(again);
             } else

@@ -119,7 +119,9 @@ TEST(piecewise2_draws_by_its_density_and_never_in_empty_rows)
     double total = 0;
     for (int i = 0; i < NX * NY; ++i) {
         expected[i] = n * (double)f[i] / sum;
-        total += (double)sr_piecewise2_pdf(&d, (sr_vec2){((float)(i % NX) + 0.5f) / NX, ((float)(i / NX) + 0.5f) / NY}) / (NX * NY);
+        total +=
+            (double)sr_piecewise2_pdf(&d, (sr_vec2){((float)(i % NX) + 0.5f) / NX, ((float)(i / NX) + 0.5f) / NY}) /
+            (NX * NY);
     }
     EXPECT_NEAR(total, 1, 1e-5);
     EXPECT_CHI2(observed, expected, NX * NY);

@@ -68,7 +68,8 @@ static void expect_net(uint32_t key, uint32_t group, uint32_t first, int k)
         memset(filled, 0, n);
         for (uint32_t i = 0; i < n; ++i) {
             sr_u4 u = draw(key, first + i, group);
-            uint32_t cell = (uint32_t)(u[0] * (float)(1u << cut)) << (k - cut) | (uint32_t)(u[1] * (float)(1u << (k - cut)));
+            uint32_t cell =
+                (uint32_t)(u[0] * (float)(1u << cut)) << (k - cut) | (uint32_t)(u[1] * (float)(1u << (k - cut)));
             EXPECT(!filled[cell]);
             filled[cell] = 1;
         }
@@ -123,7 +124,8 @@ TEST(each_point_alone_is_uniform_over_the_keys)
             memset(pair, 0, sizeof pair);
             int n = 16384;
             for (int i = 0; i < n; ++i) {
-                struct sr_sampler s = sr_sampler_start((enum sr_sampler_kind)kind, 1, (uint32_t)i & 127, (uint32_t)i >> 7, 0, sample);
+                struct sr_sampler s =
+                    sr_sampler_start((enum sr_sampler_kind)kind, 1, (uint32_t)i & 127, (uint32_t)i >> 7, 0, sample);
                 sr_u4 u = sr_sample4(&s, sample % 5);
                 for (int d = 0, q = 0; d < 4; ++d) {
                     one[d][(int)(u[d] * 256)] += 1;
@@ -209,7 +211,8 @@ TEST(smooth_integrals_converge_with_the_power_three_halves)
 {
     double slope = log(rms_error(SR_SAMPLER_SOBOL, 1024, false) / rms_error(SR_SAMPLER_SOBOL, 16, false)) / log(64);
     double padded = log(rms_error(SR_SAMPLER_SOBOL, 1024, true) / rms_error(SR_SAMPLER_SOBOL, 16, true)) / log(64);
-    double random = log(rms_error(SR_SAMPLER_INDEPENDENT, 1024, false) / rms_error(SR_SAMPLER_INDEPENDENT, 16, false)) / log(64);
+    double random =
+        log(rms_error(SR_SAMPLER_INDEPENDENT, 1024, false) / rms_error(SR_SAMPLER_INDEPENDENT, 16, false)) / log(64);
     EXPECT(slope < -1.2 && slope > -1.8);
     EXPECT_NEAR(random, -0.5, 0.06);
     // padding adds only the part that depends on both numbers at once: never worse than random

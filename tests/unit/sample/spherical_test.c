@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Spherical triangles and rectangles: their solid angle, evenness and inverse.
- * A density over directions is 1 / Omega exactly when points of the surface have the density cos / (distance^2 Omega): counts
- * over cells of the surface are compared with that integral, in double. */
+ * A density over directions is 1 / Omega exactly when points of the surface have the density cos / (distance^2 Omega):
+ * counts over cells of the surface are compared with that integral, in double. */
 #include "sample/sample.h"
 
 #include "test.h"
@@ -23,7 +23,8 @@ static sr_u4 draw(uint32_t key, uint32_t i)
 }
 
 /* the solid angle of a parallelogram's part: s + a ex + b ey for a0 < a < a1, b0 < b < b1, by quadrature [sr] */
-static double part(sr_vec3 p, sr_vec3 s, sr_vec3 ex, sr_vec3 ey, double a0, double a1, double b0, double b1, bool triangle)
+static double part(sr_vec3 p, sr_vec3 s, sr_vec3 ex, sr_vec3 ey, double a0, double a1, double b0, double b1,
+                   bool triangle)
 {
     double x[32], w[32], sum = 0;
     sr_gauss_legendre(32, 0, 1, x, w);
@@ -55,7 +56,8 @@ enum { GRID = 12, DRAWS = 30000 };
 
 TEST(spherical_triangle_area_has_closed_forms)
 {
-    EXPECT_NEAR(sr_spherical_triangle_area((sr_vec3){1, 0, 0}, (sr_vec3){0, 1, 0}, (sr_vec3){0, 0, 1}), M_PI / 2, 1e-15);
+    EXPECT_NEAR(sr_spherical_triangle_area((sr_vec3){1, 0, 0}, (sr_vec3){0, 1, 0}, (sr_vec3){0, 0, 1}), M_PI / 2,
+                1e-15);
     // with a right-angled tip of two legs s seen face-on far away: s^2 / 2
     sr_vec3 a = {0, 0, 1}, b = {1e-4f, 0, 1}, c = {0, 1e-4f, 1};
     EXPECT_RELATIVE(sr_spherical_triangle_area(a, sr_normalize(b), sr_normalize(c)), 0.5e-8, 1e-3);
@@ -67,12 +69,14 @@ TEST(spherical_triangles_are_sampled_evenly_and_inverted)
     for (uint32_t k = 0; k < 48; ++k) {
         float size = sizes[k % 4];
         sr_vec3 p = point(1000 + k, 0.3f), centre = sr_add(p, sr_normalize(point(2000 + k, 1)));
-        sr_vec3 v[3] = {sr_add(centre, point(9 * k, size)), sr_add(centre, point(9 * k + 3, size)), sr_add(centre, point(9 * k + 6, size))};
+        sr_vec3 v[3] = {sr_add(centre, point(9 * k, size)), sr_add(centre, point(9 * k + 3, size)),
+                        sr_add(centre, point(9 * k + 6, size))};
         sr_vec3 e1 = sr_sub(v[1], v[0]), e2 = sr_sub(v[2], v[0]);
         double observed[GRID * GRID] = {0}, expected[GRID * GRID], total = 0;
         for (int c = 0; c < GRID * GRID; ++c) {
             int x = c % GRID, y = c / GRID;
-            total += expected[c] = part(p, v[0], e1, e2, x / (double)GRID, (x + 1.0) / GRID, y / (double)GRID, (y + 1.0) / GRID, true);
+            total += expected[c] =
+                part(p, v[0], e1, e2, x / (double)GRID, (x + 1.0) / GRID, y / (double)GRID, (y + 1.0) / GRID, true);
         }
         double worst = 0;
         for (uint32_t i = 0; i < DRAWS; ++i) {
@@ -88,7 +92,8 @@ TEST(spherical_triangles_are_sampled_evenly_and_inverted)
             int x = (int)fmin(a * GRID, GRID - 1), y = (int)fmin(share * GRID, GRID - 1);
             observed[y * GRID + x] += 1;
             if (i < 2000) {
-                sr_vec3 q = sr_add(sr_add(sr_scale(b[0], sr_sub(v[0], p)), sr_scale(b[1], sr_sub(v[1], p))), sr_scale(b[2], sr_sub(v[2], p)));
+                sr_vec3 q = sr_add(sr_add(sr_scale(b[0], sr_sub(v[0], p)), sr_scale(b[1], sr_sub(v[1], p))),
+                                   sr_scale(b[2], sr_sub(v[2], p)));
                 sr_vec2 back = sr_spherical_triangle_invert(v, p, sr_normalize(q));
                 // near corner 1 all u.x meet: weigh by the width there
                 worst = fmax(worst, fabs((double)(back.x - u.x)) * sqrt((double)u.y));
@@ -111,12 +116,14 @@ TEST(spherical_rectangles_are_sampled_evenly_and_inverted)
         float size = sizes[k % 4];
         sr_vec3 p = point(1000 + k, 0.3f), centre = sr_add(p, sr_normalize(point(3000 + k, 1)));
         struct sr_frame f = sr_frame_from_z(sr_normalize(point(4000 + k, 1)));
-        sr_vec3 ex = sr_scale(size * uniform(5000 + k, 0.2f, 1), f.x), ey = sr_scale(size * uniform(6000 + k, 0.2f, 1), f.y);
+        sr_vec3 ex = sr_scale(size * uniform(5000 + k, 0.2f, 1), f.x),
+                ey = sr_scale(size * uniform(6000 + k, 0.2f, 1), f.y);
         sr_vec3 s = sr_mad(sr_mad(centre, -uniform(7000 + k, 0, 1), ex), -uniform(8000 + k, 0, 1), ey);
         double observed[GRID * GRID] = {0}, expected[GRID * GRID], total = 0;
         for (int c = 0; c < GRID * GRID; ++c) {
             int x = c % GRID, y = c / GRID;
-            total += expected[c] = part(p, s, ex, ey, x / (double)GRID, (x + 1.0) / GRID, y / (double)GRID, (y + 1.0) / GRID, false);
+            total += expected[c] =
+                part(p, s, ex, ey, x / (double)GRID, (x + 1.0) / GRID, y / (double)GRID, (y + 1.0) / GRID, false);
         }
         double worst = 0;
         for (uint32_t i = 0; i < DRAWS; ++i) {
@@ -159,10 +166,12 @@ TEST(degenerate_triangles_and_rectangles_give_no_density)
         EXPECT(k == 3 || k == 4 || (u.x >= 0 && u.x < 1 && u.y >= 0 && u.y < 1));
     }
     sr_vec3 x = {1, 0, 0}, y = {0, 1, 0}, nothing = {0, 0, 0};
-    sr_vec3 rectangles[][3] = {{{1, 1, 0}, x, y}, {{1, 1, 1}, nothing, y}, {{-0.5f, -0.5f, 0}, x, y}, {{0, 0, NAN}, x, y}};
+    sr_vec3 rectangles[][3] = {
+        {{1, 1, 0}, x, y}, {{1, 1, 1}, nothing, y}, {{-0.5f, -0.5f, 0}, x, y}, {{0, 0, NAN}, x, y}};
     for (int k = 0; k < 4; ++k) {
         float pdf = 7;
-        sr_spherical_rectangle_sample(p, rectangles[k][0], rectangles[k][1], rectangles[k][2], (sr_vec2){0.3f, 0.6f}, &pdf);
+        sr_spherical_rectangle_sample(p, rectangles[k][0], rectangles[k][1], rectangles[k][2], (sr_vec2){0.3f, 0.6f},
+                                      &pdf);
         EXPECT(pdf == 0);
     }
 }

@@ -161,7 +161,8 @@ TEST(bilinear_warp_has_its_density)
         for (int c = 0; c < GRID * GRID; ++c) {
             expected[c] = 0;
             for (int q = 0; q < 4; ++q) {
-                sr_vec2 p = {(float)((c % GRID) / (double)GRID + x[q % 2]), (float)((c / GRID) / (double)GRID + x[q / 2])};
+                sr_vec2 p = {(float)((c % GRID) / (double)GRID + x[q % 2]),
+                             (float)((c / GRID) / (double)GRID + x[q / 2])};
                 expected[c] += DRAWS * w[q % 2] * w[q / 2] * (double)sr_warp_bilinear_pdf(p, cases[k]);
             }
             total += expected[c];

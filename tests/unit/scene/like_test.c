@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Objects that are like others: rays meet them where they meet objects of their own, and they wear their own material. */
+/* Objects that are like others: rays meet them where they meet objects of their own, and they wear their own material.
+ */
 #include "test.h"
 
 #include "scene/scene.h"
@@ -28,7 +29,8 @@ static struct sr_shape hills(struct sr_scene *scene)
             P[y * (STEPS + 1) + x] = (sr_vec3){u, v, 0.1f * sinf(5 * u) * cosf(3 * v)};
             int32_t at = y * (STEPS + 1) + x;
             if (x < STEPS && y < STEPS) {
-                memcpy(to, (int32_t[6]){at, at + 1, at + STEPS + 2, at, at + STEPS + 2, at + STEPS + 1}, 6 * sizeof *to);
+                memcpy(to, (int32_t[6]){at, at + 1, at + STEPS + 2, at, at + STEPS + 2, at + STEPS + 1},
+                       6 * sizeof *to);
                 to += 6;
             }
         }
@@ -65,14 +67,16 @@ static void compare(float last_alpha)
     struct sr_scene *like = make(true, last_alpha), *own = make(false, last_alpha);
     uint32_t met[4] = {0};
     for (uint32_t i = 0; i < 20000; ++i) {
-        float u = sr_u32_to_float(sr_hash_combine(1, i)), v = sr_u32_to_float(sr_hash_combine(2, i)), w = sr_u32_to_float(sr_hash_combine(3, i));
+        float u = sr_u32_to_float(sr_hash_combine(1, i)), v = sr_u32_to_float(sr_hash_combine(2, i)),
+              w = sr_u32_to_float(sr_hash_combine(3, i));
         struct sr_ray ray = {.o = {8 * u - 1, 2 * v - 1, 2}, .d = {0.3f * w - 0.15f, 0.1f * w, -1}, .t_max = INFINITY};
         struct sr_hit a, b;
         bool is_hit = sr_raycast(like, &ray, &a);
         EXPECT(is_hit == sr_raycast(own, &ray, &b));
         if (!is_hit)
             continue;
-        EXPECT(a.t == b.t && memcmp(&a.point.p, &b.point.p, sizeof a.point.p) == 0 && memcmp(&a.point.n, &b.point.n, sizeof a.point.n) == 0);
+        EXPECT(a.t == b.t && memcmp(&a.point.p, &b.point.p, sizeof a.point.p) == 0 &&
+               memcmp(&a.point.n, &b.point.n, sizeof a.point.n) == 0);
         EXPECT(a.material_number == b.material_number && a.object == b.object);
         ++met[a.material_number];
     }

@@ -306,7 +306,8 @@ static struct made importance_case(int i)
         set(&m, "fov", 70);
     if (i == 5)
         *(int32_t *)member(&m, "mapping") = 1;
-    struct sr_transform turn = sr_transform_rotate(35, (sr_vec3){1, -2, 0.5f}), move = sr_transform_translate((sr_vec3){1, 2, 3}),
+    struct sr_transform turn = sr_transform_rotate(35, (sr_vec3){1, -2, 0.5f}),
+                        move = sr_transform_translate((sr_vec3){1, 2, 3}),
                         stretch = sr_transform_scale(i < 4 ? (sr_vec3){-1.5f, 1.2f, 0.8f} : (sr_vec3){1, -1, 1});
     struct sr_transform t = sr_transform_multiply(&move, &turn);
     prepare(&m, 40, 24, sr_transform_multiply(&t, &stretch));
@@ -319,7 +320,8 @@ TEST(connections_are_rays_backwards)
     for (int k = 0; k < 6; ++k) {
         struct made m = importance_case(k);
         for (int i = 0; i < 2000; ++i) {
-            sr_vec2 q = {40 * sr_rng_float(&rng), 24 * sr_rng_float(&rng)}, u = {sr_rng_float(&rng), sr_rng_float(&rng)};
+            sr_vec2 q = {40 * sr_rng_float(&rng), 24 * sr_rng_float(&rng)},
+                    u = {sr_rng_float(&rng), sr_rng_float(&rng)};
             struct sr_sensor_ray r = look(&m, q.x, q.y, u);
             float t = 0.2f + 4 * sr_rng_float(&rng);
             struct sr_sensor_view v;
@@ -363,8 +365,9 @@ TEST(importance_integrates_to_the_raster)
             sr_vec3 n = sr_warp_uniform_sphere((sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)});
             struct sr_sensor_view v;
             double value = 0;
-            if (m.model->connect(m.self, sr_mad(axis.ray.o, radius, n), 0, (sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)}, &v) && v.raster.x >= 0 &&
-                v.raster.x < 40 && v.raster.y >= 0 && v.raster.y < 24 && sr_dot(n, v.wi) < 0)
+            if (m.model->connect(m.self, sr_mad(axis.ray.o, radius, n), 0,
+                                 (sr_vec2){sr_rng_float(&rng), sr_rng_float(&rng)}, &v) &&
+                v.raster.x >= 0 && v.raster.x < 40 && v.raster.y >= 0 && v.raster.y < 24 && sr_dot(n, v.wi) < 0)
                 value = (double)(v.weight * -sr_dot(n, v.wi)) * 4 * (double)SR_PI * (double)(radius * radius);
             sr_tally_add(&all, value);
         }

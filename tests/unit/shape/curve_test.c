@@ -15,7 +15,12 @@ static struct sr_shape make_curve(struct sr_shape_curve c, struct sr_shape_place
 
 static struct sr_shape_curve bezier(const sr_vec3 P[4], float width0, float width1, int type)
 {
-    return (struct sr_shape_curve){.width = 1, .width0 = width0, .width1 = width1, .degree = 3, .type = type, .split_depth = 3,
+    return (struct sr_shape_curve){.width = 1,
+                                   .width0 = width0,
+                                   .width1 = width1,
+                                   .degree = 3,
+                                   .type = type,
+                                   .split_depth = 3,
                                    .P = {sr_arena_copy(&test_arena, P, 4 * sizeof *P), 4}};
 }
 
@@ -110,7 +115,8 @@ TEST(curve_ribbon_narrows_as_it_turns)
     for (int i = 0; i < 200; ++i) {
         float u = ((float)i + 0.5f) / 200, half = 0.5f * cosf(SR_PI / 2 * u);
         sr_vec3 d = {-1, 0, 0};
-        struct found in = cast_all(s, (sr_vec3){4, half - 1e-4f, 3 * u}, d), out = cast_all(s, (sr_vec3){4, half + 1e-4f, 3 * u}, d);
+        struct found in = cast_all(s, (sr_vec3){4, half - 1e-4f, 3 * u}, d),
+                     out = cast_all(s, (sr_vec3){4, half + 1e-4f, 3 * u}, d);
         EXPECT(in.is_hit || half < 2e-4f);
         EXPECT(!out.is_hit);
         if (!in.is_hit)
@@ -143,8 +149,10 @@ static double brute_force(const sr_vec3 P[4], double h0, double h1, sr_vec3 o, s
     for (int i = 0; i <= steps; ++i) {
         double t = (double)i / steps, p[3];
         bezier_at(P, t, p);
-        double q[3] = {p[0] - (double)o.x, p[1] - (double)o.y, p[2] - (double)o.z}, w[3] = {(double)d.x, (double)d.y, (double)d.z};
-        double along = q[0] * w[0] + q[1] * w[1] + q[2] * w[2], d2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] - along * along;
+        double q[3] = {p[0] - (double)o.x, p[1] - (double)o.y, p[2] - (double)o.z},
+               w[3] = {(double)d.x, (double)d.y, (double)d.z};
+        double along = q[0] * w[0] + q[1] * w[1] + q[2] * w[2],
+               d2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] - along * along;
         double r = 2 * sqrt(fmax(d2, 0)) / (h0 + t * (h1 - h0));
         if (r < best && along > 0) {
             best = r;
@@ -197,8 +205,8 @@ TEST(curve_bases_and_degrees_are_the_same_curve)
     sr_vec3 B[6];
     random_points(&rng, B, 6);
     for (int degree = 2; degree <= 3; ++degree) {
-        struct sr_shape_curve c = {.width = 0.3f, .width0 = 0.1f, .width1 = 0.3f, .degree = degree, .basis = 1, .split_depth = 2,
-                                   .P = {B, 6}};
+        struct sr_shape_curve c = {
+            .width = 0.3f, .width0 = 0.1f, .width1 = 0.3f, .degree = degree, .basis = 1, .split_depth = 2, .P = {B, 6}};
         struct sr_shape spline = make_curve(c, here());
         // the same by knots' averages: Bézier points of a uniform spline
         sr_vec3 Z[16];
@@ -211,8 +219,10 @@ TEST(curve_bases_and_degrees_are_the_same_curve)
                 Z[n++] = q[1];
                 Z[n++] = sr_scale(0.5f, sr_add(q[1], q[2]));
             } else {
-                sr_vec3 a = sr_scale(1 / 3.0f, sr_add(sr_scale(2, q[1]), q[2])), b = sr_scale(1 / 3.0f, sr_add(q[1], sr_scale(2, q[2])));
-                sr_vec3 before = sr_scale(1 / 3.0f, sr_add(q[0], sr_scale(2, q[1]))), after = sr_scale(1 / 3.0f, sr_add(sr_scale(2, q[2]), q[3]));
+                sr_vec3 a = sr_scale(1 / 3.0f, sr_add(sr_scale(2, q[1]), q[2])),
+                        b = sr_scale(1 / 3.0f, sr_add(q[1], sr_scale(2, q[2])));
+                sr_vec3 before = sr_scale(1 / 3.0f, sr_add(q[0], sr_scale(2, q[1]))),
+                        after = sr_scale(1 / 3.0f, sr_add(sr_scale(2, q[2]), q[3]));
                 if (i == 0)
                     Z[n++] = sr_scale(0.5f, sr_add(before, a));
                 Z[n++] = a;
@@ -244,7 +254,8 @@ TEST(curve_bases_and_degrees_are_the_same_curve)
 
 TEST(curve_widths_run_along_all_segments)
 {
-    const sr_vec3 P[10] = {{0, 0, 0}, {0, 0, 1}, {0, 0, 2}, {0, 0, 3}, {0, 0, 4}, {0, 0, 5}, {0, 0, 6}, {0, 0, 7}, {0, 0, 8}, {0, 0, 9}};
+    const sr_vec3 P[10] = {{0, 0, 0}, {0, 0, 1}, {0, 0, 2}, {0, 0, 3}, {0, 0, 4},
+                           {0, 0, 5}, {0, 0, 6}, {0, 0, 7}, {0, 0, 8}, {0, 0, 9}};
     struct sr_shape_curve c = {.width = 0.1f, .width0 = NAN, .width1 = 1, .degree = 3, .split_depth = 3, .P = {P, 10}};
     struct sr_shape s = make_curve(c, here());
     for (float z = 0.25f; z < 9; z += 0.5f) {
@@ -261,7 +272,8 @@ TEST(curve_transforms_scale_the_width)
     random_points(&rng, P, 4);
     const sr_vec3 N[2] = {{1, 0, 0}, {0, 0.6f, 0.8f}};
     const struct sr_transform t[4] = {
-        then(sr_transform_translate((sr_vec3){1, 2, 3}), then(sr_transform_rotate(40, (sr_vec3){1, 2, 1}), sr_transform_scale((sr_vec3){3, 3, 3}))),
+        then(sr_transform_translate((sr_vec3){1, 2, 3}),
+             then(sr_transform_rotate(40, (sr_vec3){1, 2, 1}), sr_transform_scale((sr_vec3){3, 3, 3}))),
         then(sr_transform_rotate(70, (sr_vec3){0, 2, 1}), sr_transform_scale((sr_vec3){2, 2, -2})),
         then(sr_transform_rotate(20, (sr_vec3){1, 0, 1}), sr_transform_scale((sr_vec3){1, 2, 4})),
         sr_transform_scale((sr_vec3){-1, 2, 0.5f}),
@@ -325,7 +337,8 @@ TEST(curve_is_not_met_by_rays_that_leave_it)
             struct sr_shape s = make_curve(c, here());
             for (int i = 0; i < 100; ++i) {
                 sr_vec3 d = random_direction(&rng), b = sr_cross(d, way);
-                sr_vec3 at = sr_mad(sr_mad(P[0], 3 * uniform(&rng), way), 0.008f * (uniform(&rng) - 0.5f), sr_normalize(b));
+                sr_vec3 at =
+                    sr_mad(sr_mad(P[0], 3 * uniform(&rng), way), 0.008f * (uniform(&rng) - 0.5f), sr_normalize(b));
                 struct found f = cast_all(s, sr_mad(at, -3, d), d);
                 if (!f.is_hit)
                     continue;
@@ -377,10 +390,12 @@ TEST(curve_refuses_wrong_counts)
 TEST(curve_without_extent_is_never_met)
 {
     const sr_vec3 P[4] = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}};
-    struct sr_shape dot = make_curve(bezier(P, 1, 1, FLAT), here()), thin = make_curve(bezier(straight, 0, 0, FLAT), here());
+    struct sr_shape dot = make_curve(bezier(P, 1, 1, FLAT), here()),
+                    thin = make_curve(bezier(straight, 0, 0, FLAT), here());
     EXPECT(!cast_all(dot, (sr_vec3){0, 1, 1}, (sr_vec3){1, 0, 0}).is_hit);
     EXPECT(!cast_all(thin, (sr_vec3){-1, 0, 1}, (sr_vec3){1, 0, 0}).is_hit);
-    EXPECT(!cast_all(make_curve(bezier(straight, 1, 1, FLAT), here()), (sr_vec3){0, 0, -1}, (sr_vec3){0, 0, 1}).is_hit); // end on
+    EXPECT(!cast_all(make_curve(bezier(straight, 1, 1, FLAT), here()), (sr_vec3){0, 0, -1}, (sr_vec3){0, 0, 1})
+                .is_hit); // end on
     EXPECT_EQUAL_INT((int)dot.model->area(dot.self, 0), 0);
     EXPECT_EQUAL_INT((int)thin.model->area(thin.self, 0), 0);
 }

@@ -4,10 +4,12 @@
 
 #include <string.h>
 
-static struct sr_shape_mesh *subdivide(const sr_vec3 *P, uint32_t vertices, const int32_t *indices, uint32_t corners, int levels)
+static struct sr_shape_mesh *subdivide(const sr_vec3 *P, uint32_t vertices, const int32_t *indices, uint32_t corners,
+                                       int levels)
 {
     struct sr_shape_loopsubdiv *l = sr_arena_alloc(&test_arena, sizeof *l);
-    *l = (struct sr_shape_loopsubdiv){.levels = levels, .unbiased = true, .indices = {indices, corners}, .P = {P, vertices}};
+    *l = (struct sr_shape_loopsubdiv){
+        .levels = levels, .unbiased = true, .indices = {indices, corners}, .P = {P, vertices}};
     PREPARE(sr_shape_loopsubdiv, l, here());
     return &l->mesh;
 }
@@ -132,7 +134,8 @@ TEST(loopsubdiv_planes_stay_planes_and_affine_maps_commute)
     }
 }
 
-/* The boundary is the uniform cubic B-spline of the boundary's control vertices alone: two surfaces that share them meet. */
+/* The boundary is the uniform cubic B-spline of the boundary's control vertices alone: two surfaces that share them
+ * meet. */
 TEST(loopsubdiv_boundary_is_a_cubic_spline)
 {
     const sr_vec3 P[5] = {{0, 0, 0}, {1, 0, 1}, {1, 1, 0}, {0, 1, 0.5f}, {0.4f, 0.6f, 3}};
@@ -154,7 +157,8 @@ TEST(loopsubdiv_boundary_is_a_cubic_spline)
         double nearest = INFINITY;
         for (int i = 0; i < 4; ++i)
             for (int s = 0; s <= 16; ++s) {
-                double t = s / 16.0, w[4] = {(1 - t) * (1 - t) * (1 - t) / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (-3 * t * t * t + 3 * t * t + 3 * t + 1) / 6, t * t * t / 6};
+                double t = s / 16.0, w[4] = {(1 - t) * (1 - t) * (1 - t) / 6, (3 * t * t * t - 6 * t * t + 4) / 6,
+                                             (-3 * t * t * t + 3 * t * t + 3 * t + 1) / 6, t * t * t / 6};
                 double p[3] = {0};
                 for (int k = 0; k < 4; ++k) {
                     sr_vec3 v = P[(i + k) % 4];
@@ -169,9 +173,11 @@ TEST(loopsubdiv_boundary_is_a_cubic_spline)
     EXPECT_EQUAL_INT(inside, 3 * 4 * 256 - 4 * 16);
 }
 
-static void expect_refused(const sr_vec3 *P, uint32_t vertices, const int32_t *indices, uint32_t corners, int levels, const char *says)
+static void expect_refused(const sr_vec3 *P, uint32_t vertices, const int32_t *indices, uint32_t corners, int levels,
+                           const char *says)
 {
-    struct sr_shape_loopsubdiv l = {.levels = levels, .unbiased = true, .indices = {indices, corners}, .P = {P, vertices}};
+    struct sr_shape_loopsubdiv l = {
+        .levels = levels, .unbiased = true, .indices = {indices, corners}, .P = {P, vertices}};
     struct sr_shape_placement placement = here();
     struct sr_error error = {0};
     EXPECT(sr_shape_loopsubdiv.prepare(&l, &placement, &test_arena, &error) != SR_OK);

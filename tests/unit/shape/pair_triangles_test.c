@@ -6,7 +6,8 @@
 
 enum { SIDE = 9, VERTICES = (SIDE + 1) * (SIDE + 1), MOST = 2 * SIDE * SIDE };
 
-/* A wavy sheet whose squares are cut in two; every `alone`-th loses its second half (0: none does), corners begin anywhere. */
+/* A wavy sheet whose squares are cut in two; every `alone`-th loses its second half (0: none does), corners begin
+ * anywhere. */
 static struct sr_shape_mesh sheet(struct sr_rng *rng, int alone, bool has_uv)
 {
     sr_vec3 P[VERTICES];
@@ -62,7 +63,8 @@ static void expect_same_surface(int alone, bool has_uv)
                 bool second = at.x + at.y > 1;
                 sr_vec3 corner = P[q[second ? 2 : 0]], along = P[q[second ? 3 : 1]], across = P[q[second ? 1 : 3]];
                 float u = second ? 1 - at.x : at.x, v = second ? 1 - at.y : at.y;
-                expected = sr_add(corner, sr_add(sr_scale(u, sr_sub(along, corner)), sr_scale(v, sr_sub(across, corner))));
+                expected =
+                    sr_add(corner, sr_add(sr_scale(u, sr_sub(along, corner)), sr_scale(v, sr_sub(across, corner))));
                 primitive = 2 * quad + sr_shape_half_of_pair(&at);
             } else if (at.x + at.y > 1)
                 at = (sr_vec2){1 - at.x, 1 - at.y};
@@ -74,14 +76,17 @@ static void expect_same_surface(int alone, bool has_uv)
             EXPECT(old < n && (quad >= whole || near(x.p, expected, 1e-6f)));
             seen[old] = true;
             // where the old triangle has the same point: its corners begin elsewhere
-            const int32_t *c = (const int32_t *)plain.indices.data + 3 * (size_t)old, *d = (const int32_t *)paired.indices.data + 3 * (size_t)primitive;
+            const int32_t *c = (const int32_t *)plain.indices.data + 3 * (size_t)old,
+                          *d = (const int32_t *)paired.indices.data + 3 * (size_t)primitive;
             float w[3] = {1 - at.x - at.y, at.x, at.y}, b[3] = {0};
             for (int k = 0; k < 9; ++k)
                 b[k / 3] += c[k / 3] == d[k % 3] ? w[k % 3] : 0;
             sr_shape_trianglemesh.point(&plain, old, (sr_vec2){b[1], b[2]}, &y);
             sr_vec2 uv = sr_shape_trianglemesh.uv(&paired, primitive, at);
-            EXPECT(near(x.p, y.p, 1e-6f) && near(x.n, y.n, 1e-5f) && near(x.dpdu, y.dpdu, 1e-4f) && near(x.dpdv, y.dpdv, 1e-4f));
-            EXPECT(fabsf(x.uv.x - y.uv.x) < 1e-5f && fabsf(x.uv.y - y.uv.y) < 1e-5f && fabsf(uv.x - y.uv.x) < 1e-5f && fabsf(uv.y - y.uv.y) < 1e-5f);
+            EXPECT(near(x.p, y.p, 1e-6f) && near(x.n, y.n, 1e-5f) && near(x.dpdu, y.dpdu, 1e-4f) &&
+                   near(x.dpdv, y.dpdv, 1e-4f));
+            EXPECT(fabsf(x.uv.x - y.uv.x) < 1e-5f && fabsf(x.uv.y - y.uv.y) < 1e-5f && fabsf(uv.x - y.uv.x) < 1e-5f &&
+                   fabsf(uv.y - y.uv.y) < 1e-5f);
         }
     }
     for (uint32_t i = 0; i < n; ++i)
@@ -100,7 +105,8 @@ TEST(pairs_are_the_same_surface)
 TEST(triangles_without_neighbours_stay)
 {
     sr_vec3 P[6] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}};
-    int32_t apart[6] = {0, 1, 2, 3, 4, 5}, same_way[6] = {0, 1, 2, 0, 1, 3}; // walked in one direction: no surface of two sides
+    int32_t apart[6] = {0, 1, 2, 3, 4, 5},
+            same_way[6] = {0, 1, 2, 0, 1, 3}; // walked in one direction: no surface of two sides
     struct sr_shape_mesh m = {.indices = SLICE(apart), .P = SLICE(P)}, k = {.indices = SLICE(same_way), .P = SLICE(P)};
     PREPARE(sr_shape_trianglemesh, &m, here());
     PREPARE(sr_shape_trianglemesh, &k, here());

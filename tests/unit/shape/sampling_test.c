@@ -112,7 +112,8 @@ TEST(triangle_sends_the_irradiance_of_lambert)
                       0.875254739837);
 }
 
-/* Van Oosterom & Strackee 1983; 4 asin(a b / sqrt((a^2 + h^2)(b^2 + h^2))); 2 pi (1 - cos). With and without a normal. */
+/* Van Oosterom & Strackee 1983; 4 asin(a b / sqrt((a^2 + h^2)(b^2 + h^2))); 2 pi (1 - cos). With and without a normal.
+ */
 TEST(mean_of_1_over_pdf_is_the_solid_angle)
 {
     struct sr_shape t = make_triangle(polygon[0], polygon[1], polygon[2], here());
@@ -202,7 +203,8 @@ static struct sr_shape zoo(int k, struct sr_transform t)
 }
 enum { zoo_count = 9 };
 
-/* Inverting a direction to the numbers that drew it loses digits where the shape is seen almost edge on; that must be rare. */
+/* Inverting a direction to the numbers that drew it loses digits where the shape is seen almost edge on; that must be
+ * rare. */
 TEST(pdf_is_what_sample_said)
 {
     for (int k = 0; k < zoo_count; ++k) {
@@ -229,8 +231,8 @@ TEST(pdf_is_what_sample_said)
     }
 }
 
-/* Directions drawn uniformly from the sphere, those that meet the shape: their mean of pdf (first meeting, or all) is the
- * probability that sample draws a direction at all, which is 1. A check of pdf that does not lean on sample. */
+/* Directions drawn uniformly from the sphere, those that meet the shape: their mean of pdf (first meeting, or all) is
+ * the probability that sample draws a direction at all, which is 1. A check of pdf that does not lean on sample. */
 TEST(pdf_integrates_to_1_over_the_directions_that_meet)
 {
     for (int k = 0; k < zoo_count; ++k) {
@@ -292,7 +294,8 @@ TEST(the_density_by_area_is_that_of_the_samples)
             struct sr_point there = {.p = y.p, .n = y.n};
             float pdf = s.model->area_pdf ? s.model->area_pdf(s.self, 0, &there) : 1 / s.model->area(s.self, 0);
             if (!(fabsf(pdf / y.pdf - 1) < 2e-3f))
-                test_fail(__FILE__, __LINE__, "shape %d: density %g of a sample drawn with %g", k, (double)pdf, (double)y.pdf);
+                test_fail(__FILE__, __LINE__, "shape %d: density %g of a sample drawn with %g", k, (double)pdf,
+                          (double)y.pdf);
         }
     }
 }

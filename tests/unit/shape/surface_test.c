@@ -44,7 +44,8 @@ static struct sr_transform somewhere(struct sr_rng *rng, float far)
     return then(t, sr_transform_scale((sr_vec3){0.5f + uniform(rng), 0.5f + uniform(rng), -0.5f - uniform(rng)}));
 }
 
-/* The point of a hit lies on the surface to within p_error, and on the ray to within the precision of the hit's floats. */
+/* The point of a hit lies on the surface to within p_error, and on the ray to within the precision of the hit's floats.
+ */
 TEST(points_lie_on_the_surface_within_their_error)
 {
     struct sr_rng rng = sr_rng_seed(1, 1);

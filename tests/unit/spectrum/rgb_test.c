@@ -99,7 +99,8 @@ static void round_trip(enum sr_colour_space_id id, double reachable)
 
 TEST(albedos_come_back_where_a_reflectance_can_have_that_colour)
 {
-    // optimal colours have spectra of vertical edges, the sigmoid's are slanted: the outermost shell is out of its reach
+    // optimal colours have spectra of vertical edges, the sigmoid's are slanted: the outermost shell is out of its
+    // reach
     round_trip(SR_SRGB, 1);
     round_trip(SR_DCI_P3, 0.9);
     round_trip(SR_REC2020, 0.9);

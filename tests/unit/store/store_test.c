@@ -55,11 +55,12 @@ static bool has_seed(const char *path, size_t a, size_t b, uint64_t seed)
     if (sr_store_open(path, NULL, &in, &error) != SR_OK)
         return false;
     size_t size_a, size_b, size_none;
-    const void *data_a = sr_store_get(in, "a", &size_a), *data_b = sr_store_get(in, "b", &size_b), *none = sr_store_get(in, "none", &size_none);
+    const void *data_a = sr_store_get(in, "a", &size_a), *data_b = sr_store_get(in, "b", &size_b),
+               *none = sr_store_get(in, "none", &size_none);
     unsigned char *bytes = sr_alloc(a + b);
     fill(bytes, a + b, seed);
-    bool ok = data_a && data_b && none && size_a == a && size_b == b && size_none == 0 && memcmp(data_a, bytes, a) == 0 && memcmp(data_b, bytes + a, b) == 0 &&
-              (uintptr_t)data_b % 64 == 0;
+    bool ok = data_a && data_b && none && size_a == a && size_b == b && size_none == 0 &&
+              memcmp(data_a, bytes, a) == 0 && memcmp(data_b, bytes + a, b) == 0 && (uintptr_t)data_b % 64 == 0;
     EXPECT(!sr_store_get(in, "c", &size_none));
     sr_store_close(in);
     sr_free(bytes);
@@ -175,9 +176,11 @@ TEST(blocks_in_each_others_place_are_found)
     static unsigned char blocks[2][SR_STORE_BLOCK];
     uint32_t sums[2];
     const off_t data = 128, checksums = 128 + 2 * SR_STORE_BLOCK;
-    EXPECT(fd >= 0 && pread(fd, blocks, sizeof blocks, data) == sizeof blocks && pread(fd, sums, sizeof sums, checksums) == sizeof sums);
+    EXPECT(fd >= 0 && pread(fd, blocks, sizeof blocks, data) == sizeof blocks &&
+           pread(fd, sums, sizeof sums, checksums) == sizeof sums);
     uint32_t swapped[2] = {sums[1], sums[0]};
-    EXPECT(pwrite(fd, blocks[1], SR_STORE_BLOCK, data) == SR_STORE_BLOCK && pwrite(fd, blocks[0], SR_STORE_BLOCK, data + SR_STORE_BLOCK) == SR_STORE_BLOCK);
+    EXPECT(pwrite(fd, blocks[1], SR_STORE_BLOCK, data) == SR_STORE_BLOCK &&
+           pwrite(fd, blocks[0], SR_STORE_BLOCK, data + SR_STORE_BLOCK) == SR_STORE_BLOCK);
     EXPECT(pwrite(fd, swapped, sizeof swapped, checksums) == sizeof swapped);
     EXPECT(!opens(path, &error));
     close(fd);
@@ -211,9 +214,11 @@ TEST(the_previous_generation_is_kept)
     struct sr_error error = {0};
     struct sr_store_out *out, *other;
     EXPECT(sr_store_create(path, "trial", &out, &error) == SR_OK);
-    EXPECT(sr_store_create(path, "trial", &other, &error) == SR_ERROR_RESOURCE && !other && strstr(error.text, "another process"));
+    EXPECT(sr_store_create(path, "trial", &other, &error) == SR_ERROR_RESOURCE && !other &&
+           strstr(error.text, "another process"));
     sr_store_abandon(out);
-    EXPECT(has_seed(path, 100, 100, 3) && has_seed(previous, 100, 100, 2) && !sr_file_exists(in_folder("generations.new")));
+    EXPECT(has_seed(path, 100, 100, 3) && has_seed(previous, 100, 100, 2) &&
+           !sr_file_exists(in_folder("generations.new")));
     error = (struct sr_error){0};
     EXPECT(sr_store_create(path, "trial", &out, &error) == SR_OK && sr_store_finish(out, false, &error) == SR_OK);
     EXPECT(!has_seed(path, 100, 100, 3) && opens(path, &error) && has_seed(previous, 100, 100, 2));
@@ -224,7 +229,8 @@ TEST(files_of_others_are_refused)
     struct sr_error error = {0};
     struct sr_store_in *in;
     const char *path = in_folder("other");
-    EXPECT(sr_file_write(path, "PLY", 3, &error) == SR_OK && !opens(path, &error) && strstr(error.text, "no checkpoint or part"));
+    EXPECT(sr_file_write(path, "PLY", 3, &error) == SR_OK && !opens(path, &error) &&
+           strstr(error.text, "no checkpoint or part"));
     write_store(path, 1, 1, 1);
     error = (struct sr_error){0};
     EXPECT(sr_store_open(path, "part", &in, &error) == SR_ERROR_INPUT && !in);

@@ -55,15 +55,18 @@ static double multiple_integrand(const double *p, double z) // and F1, F2
     double D = (2 * a + s) / (3 * t * t), tr = sqrt(a / D), ze = -2 * D * (1 + 3 * F2) / (1 - 2 * F1);
     double zv = -z + 2 * ze, dr = hypot(r, z), dv = hypot(r, zv);
     double phi = (exp(-tr * dr) / dr - exp(-tr * dv) / dv) / (4 * PI * D);
-    double E = (z * (1 + tr * dr) * exp(-tr * dr) / pow(dr, 3) - zv * (1 + tr * dv) * exp(-tr * dv) / pow(dv, 3)) / (4 * PI);
+    double E =
+        (z * (1 + tr * dr) * exp(-tr * dr) / pow(dr, 3) - zv * (1 + tr * dv) * exp(-tr * dv) / pow(dv, 3)) / (4 * PI);
     double kappa = 1 - exp(-2 * t * (dr + z));
     return t * exp(-t * z) * kappa * pow(s / t, 2) * (phi * (1 - 2 * F1) / 4 + E * (1 - 3 * F2) / 2);
 }
 
 TEST(profiles_are_the_integrals_of_photon_beam_diffusion)
 {
-    static const double cases[][4] = { // albedo, g, eta, r
-        {0.9, 0, 1.33, 0.3}, {0.9, 0, 1.33, 3}, {0.5, 0.6, 1.5, 1}, {0.99, -0.3, 1.4, 0.05}, {1, 0, 1.33, 8}, {0.3, 0, 1, 0.7}, {0.8, 0, 0.8, 0.4}};
+    static const double cases[][4] = {// albedo, g, eta, r
+                                      {0.9, 0, 1.33, 0.3},     {0.9, 0, 1.33, 3}, {0.5, 0.6, 1.5, 1},
+                                      {0.99, -0.3, 1.4, 0.05}, {1, 0, 1.33, 8},   {0.3, 0, 1, 0.7},
+                                      {0.8, 0, 0.8, 0.4}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
         const double *c = cases[i];
         double p[6] = {c[0], c[1], c[2], c[3], moment(c[2], 1), moment(c[2], 2)};
@@ -102,7 +105,8 @@ static double exact_share(double albedo, double g, double eta)
     sr_gauss_legendre(N, log(1e-6), log(200), x, w);
     for (int i = 0; i < N; ++i) {
         double r = exp(x[i]);
-        sum += w[i] * r * 2 * PI * r * (sr_diffusion_single(albedo, g, eta, r) + sr_diffusion_multiple(albedo, g, eta, r));
+        sum +=
+            w[i] * r * 2 * PI * r * (sr_diffusion_single(albedo, g, eta, r) + sr_diffusion_multiple(albedo, g, eta, r));
     }
     return sum;
 }
@@ -113,11 +117,13 @@ TEST(the_table_keeps_the_integrals)
     static const float albedos[] = {0.2f, 0.6f, 0.9f, 0.99f, 0.999f};
     for (int i = 0; i < 5; ++i) {
         double exact = exact_share((double)albedos[i], 0, 1.33);
-        printf("  albedo %.3f: comes out %.5f, exact %.5f\n", (double)albedos[i], (double)sr_diffusion_effective(d, albedos[i]), exact);
+        printf("  albedo %.3f: comes out %.5f, exact %.5f\n", (double)albedos[i],
+               (double)sr_diffusion_effective(d, albedos[i]), exact);
         EXPECT_RELATIVE(sr_diffusion_effective(d, albedos[i]), exact, 4e-3);
         struct sr_bssrdf b = body(d, albedos[i], 2);
         for (float r = 0.02f; r < 4; r *= 1.37f) { // S(r) = sigma_t^2 S(r sigma_t)
-            double S = 4 * (sr_diffusion_single((double)albedos[i], 0, 1.33, 2 * (double)r) + sr_diffusion_multiple((double)albedos[i], 0, 1.33, 2 * (double)r));
+            double S = 4 * (sr_diffusion_single((double)albedos[i], 0, 1.33, 2 * (double)r) +
+                            sr_diffusion_multiple((double)albedos[i], 0, 1.33, 2 * (double)r));
             EXPECT_RELATIVE(sr_bssrdf_profile(&b, r, NULL)[0], S, 0.02);
         }
     }
@@ -131,7 +137,8 @@ TEST(no_more_comes_out_than_has_entered)
             const struct sr_diffusion *d = table(gs[i], etas[j]);
             for (int k = 1; k < SR_DIFFUSION_ALBEDOS; ++k)
                 EXPECT(d->effective[k] > d->effective[k - 1]);
-            printf("  g %4.1f eta %.2f: all of albedo 1 is %.4f\n", gs[i], etas[j], (double)d->effective[SR_DIFFUSION_ALBEDOS - 1]);
+            printf("  g %4.1f eta %.2f: all of albedo 1 is %.4f\n", gs[i], etas[j],
+                   (double)d->effective[SR_DIFFUSION_ALBEDOS - 1]);
             EXPECT(d->effective[SR_DIFFUSION_ALBEDOS - 1] <= 1 + 1e-6f);
             for (float a = 0.99f; a <= 1; a += 1e-4f)
                 EXPECT(sr_diffusion_effective(d, a) <= 1 + 1e-4f);
@@ -172,7 +179,8 @@ TEST(distances_are_drawn_by_their_density)
                 sr_bssrdf_profile(&b, (float)r, &pdf);
                 expected[cell] += w[k] * 2 * (double)end * x[k] * 2 * PI * r * (double)pdf[2] * DRAWS;
             }
-            EXPECT_NEAR(observed[cell], expected[cell], 3 + 2e-3 * expected[cell]); // the draws are even: no chance in them
+            EXPECT_NEAR(observed[cell], expected[cell],
+                        3 + 2e-3 * expected[cell]); // the draws are even: no chance in them
         }
     }
 }
@@ -189,17 +197,18 @@ TEST(what_does_not_scatter_lets_nothing_out)
     EXPECT(sr_spectrum_is_finite(sr_bssrdf_profile(&black, 0, NULL)));
 }
 
-/* The model's limit: a half space of the same index, scattering evenly, returns of diffuse light 1 - 2 sqrt(1 - albedo) alpha_1
- * (Chandrasekhar 1950; H's first moment), and of a beam straight down 1 - sqrt(1 - albedo) H(1). The model knows no direction
- * of what enters; it lies between the two for albedos up to 0.9, and above both by up to 6 % beyond. */
+/* The model's limit: a half space of the same index, scattering evenly, returns of diffuse light 1 - 2 sqrt(1 - albedo)
+ * alpha_1 (Chandrasekhar 1950; H's first moment), and of a beam straight down 1 - sqrt(1 - albedo) H(1). The model
+ * knows no direction of what enters; it lies between the two for albedos up to 0.9, and above both by up to 6 % beyond.
+ */
 TEST(a_half_space_is_met_within_the_limits_of_diffusion)
 {
     static const double cases[][3] = {{0.5, 0.146544, 0.115226}, {0.9, 0.478024, 0.414947}, {0.99, 0.794564, 0.752721}};
     const struct sr_diffusion *d = table(0, 1);
     for (int i = 0; i < 3; ++i) {
         double e = (double)sr_diffusion_effective(d, (float)cases[i][0]);
-        printf("  albedo %.2f: %.4f, diffuse light %.4f (%+.1f %%), a beam %.4f (%+.1f %%)\n", cases[i][0], e, cases[i][1], 100 * (e / cases[i][1] - 1), cases[i][2],
-               100 * (e / cases[i][2] - 1));
+        printf("  albedo %.2f: %.4f, diffuse light %.4f (%+.1f %%), a beam %.4f (%+.1f %%)\n", cases[i][0], e,
+               cases[i][1], 100 * (e / cases[i][1] - 1), cases[i][2], 100 * (e / cases[i][2] - 1));
         EXPECT(e > cases[i][2] * 0.99 && e < cases[i][1] * 1.07);
     }
 }

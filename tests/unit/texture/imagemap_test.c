@@ -143,7 +143,8 @@ TEST(trilinear_mixes_two_levels_and_ewa_follows_a_long_footprint)
     *(int32_t *)made_member(&r, "filter") = EWA;
     struct sr_texture rows = made_texture(&r, SR_PARAM_ALBEDO);
     struct sr_point along = {.uv = {0.3f, 1 - 0.1875f}, .dudx = 0.4f, .dvdy = 0.06f};
-    EXPECT_NEAR(sr_texture_float(rows, &along), 2, 0.2); // its neighbours count a little: the ellipse is a texel wide at least
+    EXPECT_NEAR(sr_texture_float(rows, &along), 2,
+                0.2); // its neighbours count a little: the ellipse is a texel wide at least
     struct sr_point across = {.uv = {0.3f, 1 - 0.1875f}, .dudx = 0.06f, .dvdy = 0.4f};
     EXPECT_NEAR(sr_texture_float(rows, &across), 1, 0.35);
     sr_arena_free(&m.arena);
@@ -234,7 +235,8 @@ TEST(every_filter_keeps_the_mean_of_the_texels)
                                          .dudy = axes[k][2],
                                          .dvdy = axes[k][3]};
                     sum += (double)sr_texture_float(t, &x) / (W * H * FINE * FINE);
-                    sum_of_spectra += (double)sr_texture_spectrum(spectral, &x, &w)[3 * SR_LAMBDA_COUNT / 8] / (W * H * FINE * FINE);
+                    sum_of_spectra +=
+                        (double)sr_texture_spectrum(spectral, &x, &w)[3 * SR_LAMBDA_COUNT / 8] / (W * H * FINE * FINE);
                 }
             EXPECT_NEAR(sum, mean, 2e-6);
             first = k == 0 ? sum_of_spectra : first;
@@ -349,8 +351,8 @@ TEST(texels_that_are_no_numbers_do_no_harm)
     }
 }
 
-/* Colours that repeat are converted once in a band of rows: each texel must still be its own, also where two colours that
- * differ in green alone fall on one another in the converter's memory. */
+/* Colours that repeat are converted once in a band of rows: each texel must still be its own, also where two colours
+ * that differ in green alone fall on one another in the converter's memory. */
 TEST(every_texel_of_a_large_image_is_its_own)
 {
     enum { SIZE = 300 };
@@ -383,7 +385,8 @@ TEST(an_image_without_texels_is_refused)
 
 TEST(textures_of_one_image_share_its_levels_where_they_are_the_same)
 {
-    struct made first = image(true, 4, 2, 1, ramp), like = image(true, 4, 2, 1, ramp), darker = image(true, 4, 2, 1, ramp);
+    struct made first = image(true, 4, 2, 1, ramp), like = image(true, 4, 2, 1, ramp),
+                darker = image(true, 4, 2, 1, ramp);
     *(int32_t *)made_member(&like, "filter") = POINT;
     *(float *)made_member(&darker, "scale") = 0.5f;
     struct sr_texture t = made_texture(&first, SR_PARAM_ALBEDO);

@@ -9,7 +9,8 @@ static struct sr_texels texels(void)
 {
     for (int i = 0; i < 256; ++i)
         linear[i] = (float)i / 255;
-    return (struct sr_texels){.width = 2, .height = 2, .channels = 4, .bytes = bytes, .decode = linear, .space = SR_SRGB};
+    return (struct sr_texels){
+        .width = 2, .height = 2, .channels = 4, .bytes = bytes, .decode = linear, .space = SR_SRGB};
 }
 
 static struct made map(bool is_float)
@@ -75,7 +76,8 @@ TEST(texelmap_moves_coordinates)
     sr_arena_free(&m.arena);
     m = map(true);
     *(struct sr_slice *)made_member(&m, "transform") = (struct sr_slice){turn, 5};
-    EXPECT(m.model->prepare(m.self, (struct sr_texture_use){SR_PARAM_ALBEDO, SR_SRGB}, &m.arena, &m.error) == SR_ERROR_INPUT);
+    EXPECT(m.model->prepare(m.self, (struct sr_texture_use){SR_PARAM_ALBEDO, SR_SRGB}, &m.arena, &m.error) ==
+           SR_ERROR_INPUT);
     sr_arena_free(&m.arena);
 }
 
@@ -121,9 +123,11 @@ TEST(texelmap_tints_component_by_component)
 
 TEST(attribute_interpolates_values_of_corners)
 {
-    static const float values[2 * 3 * 4] = {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 4, 0.8f, 0.2f, 0.2f, 5, 0.2f, 0.8f, 0.2f, 6, 0.2f, 0.2f, 0.8f, 7};
+    static const float values[2 * 3 * 4] = {0,    0,    0,    1, 0,    0,    0,    2, 0,    0,    0,    4,
+                                            0.8f, 0.2f, 0.2f, 5, 0.2f, 0.8f, 0.2f, 6, 0.2f, 0.2f, 0.8f, 7};
     struct made m = make("attribute", true), s = make("attribute", false);
-    *(struct sr_slice *)made_member(&m, "values") = *(struct sr_slice *)made_member(&s, "values") = (struct sr_slice){values, 24};
+    *(struct sr_slice *)made_member(&m, "values") = *(struct sr_slice *)made_member(&s, "values") =
+        (struct sr_slice){values, 24};
     *(int32_t *)made_member(&m, "components") = *(int32_t *)made_member(&s, "components") = 4;
     *(int32_t *)made_member(&m, "component") = 3;
     struct sr_texture t = made_texture(&m, SR_PARAM_ALBEDO), colour = made_texture(&s, SR_PARAM_ALBEDO);
