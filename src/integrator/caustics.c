@@ -12,10 +12,8 @@
  * H. W. Jensen 1996; r shrinks from sample to sample (photon_map.c), so that the picture converges to the equation's
  * solution. Limits: caustics are blurred by r, which error bars do not tell; what slightly rough glass throws is left
  * to path tracing; a meter, which shares nothing, is read by path tracing alone. */
-#include "integrator/path.h"
 #include "integrator/photon_map.h"
-#include "integrator/shade.h"
-#include "integrator/vertices.h"
+#include "integrator/way.h"
 
 struct caustics {
     int32_t max_depth;
@@ -92,92 +90,33 @@ static void gather(const struct sr_photon_map *map, struct gathering *g, sr_spec
 }
 
 /* L along the path, but for what photons of a single wavelength bring. */
-static sr_spectrum walk(const struct caustics *m, const struct sr_scene *scene, const struct sr_path_start *start,
-                        const struct sr_sampler *sampler, const struct sr_photon_map *map, struct sr_wavelengths *w,
-                        struct sr_hit *first, struct sr_worker *worker, sr_spectrum *single)
+static sr_spectrum walk(const struct caustics *m, const struct sr_photon_map *map, struct sr_way *p,
+                        sr_spectrum *single)
 {
-    const struct sr_lights *lights = sr_scene_lights(scene);
-    bool has_footprints = sr_scene_has_footprints(scene);
-    float width = 0, spread = has_footprints ? 0.5f * (sr_length(start->dddx) + sr_length(start->dddy)) : 0;
-    struct sr_ray ray = start->ray;
-    sr_spectrum L = SR_BLACK, beta = SR_ONE;
-    float pdf = INFINITY, eta_scale = 1;
-    bool is_scattered = false;
-    struct sr_point from;
-    if (start->receiver) {
-        from = *start->receiver;
-        pdf = start->pdf;
-    }
-    for (int bounce = 0, passed = 0;;) {
-        uint32_t group = SR_USE_BOUNCE + 2 * (uint32_t)bounce;
-        sr_u4 u_light, u_bsdf;
-        sr_sample8(sampler, group, &u_light, &u_bsdf);
-        struct sr_hit x;
-        bool is_hit = sr_trace(scene, &ray, &x, worker);
-        if (first && bounce == 0)
-            *first = is_hit ? x : (struct sr_hit){.t = INFINITY};
+    for (;;) {
         // light that mirrors throw on what has scattered this path before is the photons'
-        bool is_photons = map && is_scattered && isinf(pdf);
-        if (!is_photons && (!is_hit || x.light != SR_NO_LIGHT)) {
-            struct sr_path_start now = {.ray = ray, .receiver = isinf(pdf) ? NULL : &from, .pdf = pdf};
-            L += beta * sr_met_at_once(scene, &now, is_hit ? &x : NULL, ray.d, w);
-        }
-        if (!is_hit || (x.material && bounce == m->max_depth))
-            return L;
-        if (x.material && has_footprints) {
-            sr_path_footprint(start, &x, bounce == 0, is_scattered, spread, &width);
-            if (first && bounce == 0)
-                first->point = x.point;
-        }
-        struct sr_bsdf bsdf;
-        struct sr_frame frame;
-        if (!sr_shade(&x, ray.d, u_bsdf[3], sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu, w,
-                      &bsdf, &frame)) {
-            if (!sr_pass(&x, &ray, &passed))
-                return L;
+        bool is_photons = map && p->is_scattered && isinf(p->pdf);
+        sr_spectrum met;
+        enum sr_arrival arrival = sr_way_arrive(p, m->max_depth, !is_photons, &met);
+        if (arrival == SR_ARRIVAL_END)
+            return p->L;
+        if (arrival == SR_ARRIVAL_NOTHING)
             continue;
-        }
-        worker->vertices += 1;
-        sr_vec3 wo = sr_to_local(&frame, sr_neg(ray.d));
-        if (wo.z == 0)
-            return L;
-        if (sr_bsdf_lobes(&bsdf) & (SR_LOBE_DIFFUSE | SR_LOBE_GLOSSY)) {
-            struct sr_light_sample l;
-            sr_spectrum L_direct;
-            if (sr_path_direct(lights, &x.point, &frame, &bsdf, wo, u_light, w, &l, &L_direct) &&
-                sr_unoccluded(scene, &x.point, &l, worker))
-                L += beta * L_direct;
-            if (map && bounce + 1 < m->max_depth)
-                gather(map,
-                       &(struct gathering){.x = &x,
-                                           .bsdf = &bsdf,
-                                           .frame = &frame,
-                                           .wo = wo,
-                                           .most = (uint32_t)(m->max_depth - bounce - 1)},
-                       beta, &L, single);
-        }
-        struct sr_bsdf_sample s;
-        if (!sr_bsdf_sample(&bsdf, wo, u_bsdf[2], (sr_vec2){u_bsdf[0], u_bsdf[1]}, SR_RADIANCE, &s))
-            return L;
-        beta *= s.f * (sr_abs_cos_theta(s.wi) / s.pdf);
-        pdf = s.lobe & SR_LOBE_SPECULAR ? INFINITY
-              : s.pdf_is_proportional   ? sr_bsdf_pdf(&bsdf, wo, s.wi, SR_RADIANCE)
-                                        : s.pdf;
-        if (s.lobe & SR_LOBE_TRANSMISSION)
-            eta_scale *= s.eta * s.eta;
-        is_scattered |= !(s.lobe & SR_LOBE_SPECULAR);
-        from = x.point;
-        ray = sr_leave(&x.point, sr_to_world(&frame, s.wi));
-        ++bounce;
-        float carried = sr_spectrum_max(beta) * eta_scale;
-        if (!(carried > 0))
-            return L;
-        if (carried < 1 && bounce > 1) {
-            float survive = sr_max(carried, 0.05f);
-            if (u_light[3] >= survive)
-                return L;
-            beta *= 1 / survive;
-        }
+        sr_way_gain_direct(p);
+        if (map && sr_way_is_open(p) && p->bounce + 1 < m->max_depth)
+            gather(map,
+                   &(struct gathering){.x = &p->x,
+                                       .bsdf = &p->bsdf,
+                                       .frame = &p->frame,
+                                       .wo = p->wo,
+                                       .most = (uint32_t)(m->max_depth - p->bounce - 1)},
+                   p->beta, &p->L, single);
+        if (!sr_way_scatter(p))
+            return p->L;
+        float stands_for = sr_way_lot(p, sr_spectrum_max(p->beta));
+        if (stands_for == 0)
+            return p->L;
+        p->beta *= stands_for;
     }
 }
 
@@ -192,7 +131,9 @@ static sr_spectrum caustics_L(const void *self, const struct sr_scene *scene, co
             return SR_BLACK + NAN; // no memory: dropped, and told
         *w = map->w;               // photons are of the same wavelengths
     }
-    sr_spectrum single = SR_BLACK, L = walk(self, scene, start, sampler, map, w, first, worker, &single);
+    struct sr_way way;
+    sr_way_begin(&way, scene, start, sampler, w, first, worker);
+    sr_spectrum single = SR_BLACK, L = walk(self, map, &way, &single);
     // of one wavelength: it stands for all, whether dispersion has left the sensor's path the others or not
     L[0] += single[0] * (sr_wavelengths_secondary_terminated(w) ? 1 : SR_LAMBDA_COUNT);
     return L;

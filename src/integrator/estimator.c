@@ -9,6 +9,7 @@
  * directions: the BSDF's if that is in the set, else the cosine's, else the uniform one's; where the set has no
  * directions at all, the BSDF's, whose ray then counts only such light as no strategy of the set can draw. Mirrors and
  * clear glass are always followed. */
+#include "integrator/shade.h"
 #include "integrator/strategies.h"
 
 #include <string.h>
@@ -280,7 +281,8 @@ static sr_spectrum walk(const struct walk *t, const struct sr_path_start *start,
     struct sr_vertex vertices[2] = {{.receiver = receiver}};
     struct sr_vertex *v = &vertices[0], *from = &vertices[1];
     int by = FROM_NOWHERE, passed = 0;
-    float eta_scale = 1, width = 0, spread = 0.5f * (sr_length(start->dddx) + sr_length(start->dddy));
+    float eta_scale = 1;
+    struct sr_cone cone = sr_cone_of(start, sr_scene_has_footprints(t->scene));
     bool is_scattered = receiver;
     if (receiver) {
         v->hit.point = receiver->x;
@@ -302,20 +304,12 @@ static sr_spectrum walk(const struct walk *t, const struct sr_path_start *start,
             L += beta * glow(t, from, by, x, ray.d);
             if (x->material && bounce == t->e->max_depth)
                 return L;
-            if (x->material && sr_scene_has_footprints(t->scene))
-                sr_path_footprint(start, x, bounce == 0, is_scattered, spread, &width);
-            if (first && bounce == 0)
-                first->point = x->point;
-            v->bsdf.model = NULL;
+            sr_cone_meet(&cone, x, bounce == 0, is_scattered, first);
             v->receiver = NULL;
-            if (x->material)
-                sr_material_shade(x->material, &x->point, sr_neg(ray.d), u[0],
-                                  sr_hash_combine(t->sampler->key + t->sampler->sample, group), t->w, &v->bsdf,
-                                  &v->frame);
-            if (!v->bsdf.model) { // an interface: the path goes on as it was
-                if (++passed > 1000)
+            if (!sr_shade(x, ray.d, u[0], sr_hash_combine(t->sampler->key + t->sampler->sample, group), t->w, &v->bsdf,
+                          &v->frame)) {
+                if (!sr_pass_by(x, &ray, &passed))
                     return L;
-                ray = sr_leave(&x->point, ray.d);
                 continue;
             }
             t->worker->vertices += 1;

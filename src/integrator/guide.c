@@ -183,7 +183,7 @@ void sr_guide_add(struct sr_guide *g, const struct sr_guide_record *r)
     if (cell->has_light) {
         gain(&cell->measured[r->kind], 1);
         for (int k = 0; k < SR_GUIDE_SHARES; ++k) {
-            float a = sr_guide_shares[k], pdf = (1 - a) * r->pdf_bsdf + a * r->pdf_guide;
+            float pdf = sr_guide_mix(sr_guide_shares[k], r->pdf_bsdf, r->pdf_guide);
             gain(&cell->moments[r->kind][k], whole(r->noise * g->per_noise * (double)(r->pdf / pdf)));
         }
     }

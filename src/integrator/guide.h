@@ -31,6 +31,12 @@ struct sr_guide_cell {
     uint64_t moments[SR_GUIDE_KINDS][SR_GUIDE_SHARES]; // of the estimate's square, were the share this one
 };
 
+/* The density of a direction that the guide draws in that share of cases. */
+static inline float sr_guide_mix(float share, float pdf_bsdf, float pdf_guide)
+{
+    return (1 - share) * pdf_bsdf + share * pdf_guide;
+}
+
 struct sr_guide;
 
 /* Six whole numbers of 20 bits: position and normal. */

@@ -119,8 +119,8 @@ struct sr_integrator_model {
      * or returns NULL: none. */
     const char *(*blind)(const void *self, const struct sr_scene *scene);
     const char *(*label)(const void *self); // what tells it from others of its kind; NULL: its name
-    bool (*enters_bodies)(
-        const void *self); // follows light through translucent bodies; NULL: never, to it they are glass
+    // follows light through translucent bodies; NULL: never, to it they are glass
+    bool (*enters_bodies)(const void *self);
 };
 extern const struct sr_integrator_model *const sr_integrator_models[]; // ends with NULL
 const struct sr_integrator_model *sr_integrator_model_find(const char *name);

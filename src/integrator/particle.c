@@ -8,6 +8,7 @@
  * mean, and how well they do tells something. Media take part; that they glow does not. Limits: shading normals that
  * differ from the surface's neither absorb nor keep exactly. */
 #include "integrator/flight.h"
+#include "integrator/shade.h"
 #include "integrator/vertices.h"
 
 enum { MOST_SCATTERINGS = 100000, MOST_PASSED = 1000 };
@@ -93,7 +94,7 @@ void sr_follow_particle(const struct sr_scene *scene, const struct sr_sampler *s
             uint32_t group = SR_USE_LIGHT_PATH + 2 + 2 * (uint32_t)scatterings;
             sr_sample8(sampler, group, &u_survive, &u_bsdf);
             sr_point_set_footprint(&x.point, (sr_vec3){0, 0, 0}, (sr_vec3){0, 0, 0});
-            uint32_t seed = sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu;
+            uint32_t seed = sr_shade_seed(sampler, group);
             sr_material_shade(x.material, &x.point, sr_neg(ray.d), u_bsdf[3], seed, w, &bsdf, &frame);
         }
         if (!bsdf.model) {

@@ -6,6 +6,7 @@
  * The integral is estimated twice, by a direction toward a light and by one that the surface prefers, and the two are
  * weighed by their densities (Veach 1997, power heuristic). */
 #include "integrator/path.h"
+#include "integrator/shade.h"
 
 static const struct sr_param params[] = {
     SR_PATH_PARAMS(0),
@@ -58,12 +59,6 @@ static __attribute__((noinline)) bool emerge(const struct sr_scene *scene, const
     return sr_bsdf_sample(bsdf, up, u_bsdf[2], (sr_vec2){u_bsdf[0], u_bsdf[1]}, SR_RADIANCE, s);
 }
 
-// for random walks within a vertex, which hash it
-static inline uint32_t seed_of(const struct sr_sampler *sampler, uint32_t group)
-{
-    return sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu;
-}
-
 /* has_footprints, has_subsurface: constants where the compiler is to leave out what they ask for. */
 SR_INLINE sr_spectrum follow(const struct sr_path *path, const struct sr_scene *scene,
                              const struct sr_path_start *start, const struct sr_sampler *sampler,
@@ -74,12 +69,11 @@ SR_INLINE sr_spectrum follow(const struct sr_path *path, const struct sr_scene *
     struct sr_ray ray = start->ray;
     sr_spectrum L = SR_BLACK;  // radiance gathered so far                     [W m^-2 sr^-1 nm^-1]
     sr_spectrum beta = SR_ONE; // product of f |cos theta_i| / pdf             [1]
-    float pdf =
-        INFINITY; // density that chose ray.d                     [1/sr]; infinite: no light sampling could compete
+    // density that chose ray.d [1/sr]; infinite: no light sampling could compete
+    float pdf = INFINITY;
     float eta_scale = 1;       // what refraction has made of beta, and will undo [1]
     bool is_scattered = false; // by more than mirrors and clear glass
-    float width = 0;           // of the path at its last surface              [m]
-    float spread = has_footprints ? 0.5f * (sr_length(start->dddx) + sr_length(start->dddy)) : 0; // [1]
+    struct sr_cone cone = sr_cone_of(start, has_footprints);
     struct sr_hit hits[2]; // where the path is now, and where it was scattered last
     struct sr_hit *x = &hits[0], *from = &hits[1];
     bool is_seen = first || has_footprints; // where the path is, all of it
@@ -113,44 +107,21 @@ SR_INLINE sr_spectrum follow(const struct sr_path *path, const struct sr_scene *
                                           sr_light_density(lights->lights[x->light], &from->point, ray.d, &x->point)));
         }
         if (!x->material) { // an interface: the path goes on as it was
-            if (++passed > 1000)
+            if (!sr_pass_by(x, &ray, &passed))
                 return L;
-            ray = sr_leave(&x->point, ray.d);
             continue;
         }
         if (bounce == path->max_depth)
             return L;
 
         // what scatters here
-        if (has_footprints) {
-            if (bounce == 0) {
-                sr_first_footprint(start, &x->point);
-                if (first)
-                    first->point = x->point;
-                width = 0.5f * (sr_length(x->point.dpdx) + sr_length(x->point.dpdy));
-            } else if (!is_scattered) {
-                width += spread * x->t;
-            }
-            if (x->has_footprint && is_scattered) {
-                sr_seen_footprint(start, &x->point);
-            } else if (x->has_footprint && bounce > 0) {
-                struct sr_frame tangent = sr_frame_from_z(x->point.n);
-                sr_point_set_footprint(&x->point, sr_scale(width, tangent.x), sr_scale(width, tangent.y));
-            }
-        }
+        sr_cone_meet(&cone, x, bounce == 0, is_scattered, first);
         worker->vertices += 1;
         struct sr_bsdf bsdf;
         struct sr_frame frame;
-        if (SR_LIKELY(x->is_plain))
-            sr_material_shade_plain(x->material, x->lambert, &x->point, sr_neg(ray.d), u_bsdf[3],
-                                    seed_of(sampler, group), w, &bsdf, &frame);
-        else
-            sr_material_shade(x->material, &x->point, sr_neg(ray.d), u_bsdf[3], seed_of(sampler, group), w, &bsdf,
-                              &frame);
-        if (!bsdf.model) {
-            if (++passed > 1000)
+        if (!sr_shade_plain(x, ray.d, u_bsdf[3], sr_shade_seed(sampler, group), w, &bsdf, &frame)) {
+            if (!sr_pass_by(x, &ray, &passed))
                 return L;
-            ray = sr_leave(&x->point, ray.d);
             continue;
         }
         sr_vec3 wo = sr_to_local(&frame, sr_neg(ray.d));
@@ -171,7 +142,8 @@ SR_INLINE sr_spectrum follow(const struct sr_path *path, const struct sr_scene *
             return L;
         struct sr_bssrdf body;
         if (SR_UNLIKELY(has_subsurface) && s.lobe & SR_LOBE_TRANSMISSION &&
-            sr_material_bssrdf(x->material, &x->point, sr_neg(ray.d), u_bsdf[3], seed_of(sampler, group), w, &body) &&
+            sr_material_bssrdf(x->material, &x->point, sr_neg(ray.d), u_bsdf[3], sr_shade_seed(sampler, group), w,
+                               &body) &&
             !emerge(scene, &body, sampler, SR_USE_SUBSURFACE + 3 * (uint32_t)bounce, w, worker, x, &frame, &bsdf, &s,
                     &beta, &L))
             return L;

@@ -11,28 +11,17 @@ struct sr_path {
     bool regularize;
     bool subsurface; // light goes through translucent bodies
 };
-#define SR_PATH_PARAMS(is_through_bodies)                                                                              \
-    {SR_PARAM_INT, "maxdepth", "1", 0, 1e6, 5, offsetof(struct sr_path, max_depth), "most scatterings of a path"},     \
-        {SR_PARAM_ENUM,                                                                                                \
-         "lightsampler",                                                                                               \
-         "1",                                                                                                          \
-         0,                                                                                                            \
-         3,                                                                                                            \
-         0,                                                                                                            \
-         offsetof(struct sr_path, light_sampler),                                                                      \
-         "bvh|power|uniform|exhaustive"},                                                                              \
-        {SR_PARAM_BOOL,                                                                                                \
-         "regularize",                                                                                                 \
-         "1",                                                                                                          \
-         0,                                                                                                            \
-         1,                                                                                                            \
-         0,                                                                                                            \
-         offsetof(struct sr_path, regularize),                                                                         \
-         "accepted; never done, for it is biased"},                                                                    \
-    {                                                                                                                  \
-        SR_PARAM_BOOL, "subsurface", "1", 0, 1, is_through_bodies, offsetof(struct sr_path, subsurface),               \
-            "light goes through bodies of the material \"subsurface\"; false: they are glass, as for pbrt's path"      \
-    }
+// rows of a table: one line each, or two
+// clang-format off
+#define SR_PATH_PARAMS(is_through_bodies) \
+    {SR_PARAM_INT, "maxdepth", "1", 0, 1e6, 5, offsetof(struct sr_path, max_depth), "most scatterings of a path"}, \
+    {SR_PARAM_ENUM, "lightsampler", "1", 0, 3, 0, offsetof(struct sr_path, light_sampler), \
+     "bvh|power|uniform|exhaustive"}, \
+    {SR_PARAM_BOOL, "regularize", "1", 0, 1, 0, offsetof(struct sr_path, regularize), \
+     "accepted; never done, for it is biased"}, \
+    {SR_PARAM_BOOL, "subsurface", "1", 0, 1, is_through_bodies, offsetof(struct sr_path, subsurface), \
+     "light goes through bodies of the material \"subsurface\"; false: they are glass, as for pbrt's path"}
+// clang-format on
 bool sr_path_enters_bodies(const void *self);
 extern const struct sr_integrator_model sr_integrator_path, sr_integrator_volpath;
 

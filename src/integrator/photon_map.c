@@ -10,6 +10,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "integrator/photon_map.h"
 
+#include "integrator/shade.h"
 #include "integrator/vertices.h"
 
 #include <pthread.h>
@@ -126,8 +127,8 @@ static bool trace(const struct sr_photon_maps *m, const struct sr_photon_map *ma
             uint32_t group = SR_USE_LIGHT_PATH + 2 + 2 * scatterings;
             sr_sample8(sampler, group, &u_survive, &u_bsdf);
             sr_point_set_footprint(&x.point, (sr_vec3){0, 0, 0}, (sr_vec3){0, 0, 0});
-            sr_material_shade(x.material, &x.point, sr_neg(ray.d), u_bsdf[3],
-                              sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu, &w, &bsdf, &frame);
+            sr_material_shade(x.material, &x.point, sr_neg(ray.d), u_bsdf[3], sr_shade_seed(sampler, group), &w, &bsdf,
+                              &frame);
         }
         if (!bsdf.model) {
             ++passed;
@@ -201,8 +202,8 @@ static bool build_grid(const struct sr_photon_maps *m, struct slot *s)
     map->cells = sr_alloc(((size_t)cells + 2) * sizeof *map->cells);
     if (count >= UINT32_MAX || !map->photons || !map->cells)
         return false;
-    uint32_t *begin =
-        map->cells + 1; // filling moves the beginning of each cell to its end, which is the beginning of the next
+    // filling moves the beginning of each cell to its end, which is the beginning of the next
+    uint32_t *begin = map->cells + 1;
     for (uint64_t i = 0; i < m->chunk_count; ++i)
         for (size_t k = 0; k < s->chunks[i].count; ++k)
             ++begin[cell_of(map, ((struct sr_photon *)s->chunks[i].data)[k].p)];

@@ -43,7 +43,7 @@ static sr_spectrum random_walk_L(const void *self, const struct sr_scene *scene,
         struct sr_bsdf bsdf;
         struct sr_frame frame;
         if (!sr_shade(&x, ray.d, u[3], sr_hash_combine(sampler->key + sampler->sample, group), w, &bsdf, &frame)) {
-            if (!sr_pass(&x, &ray, &passed))
+            if (!sr_pass_by(&x, &ray, &passed))
                 return L;
             continue;
         }

@@ -8,6 +8,12 @@
 
 enum { SR_MOST_PASSED = 1000 }; // surfaces that do not scatter, of one path
 
+/* For random walks within a material, which hash it; group: of the vertex' numbers. */
+static inline uint32_t sr_shade_seed(const struct sr_sampler *sampler, uint32_t group)
+{
+    return sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu;
+}
+
 /* The BSDF and the frame at x for a ray of direction d; false: nothing scatters there. u and seed choose what materials
  * leave to chance. */
 static inline bool sr_shade(struct sr_hit *x, sr_vec3 d, float u, uint32_t seed, struct sr_wavelengths *w,
@@ -30,10 +36,35 @@ static inline bool sr_shade_plain(struct sr_hit *x, sr_vec3 d, float u, uint32_t
 }
 
 /* The ray goes on behind x; false: the path has passed enough. */
-static inline bool sr_pass(const struct sr_hit *x, struct sr_ray *ray, int *passed)
+static inline bool sr_pass_by(const struct sr_hit *x, struct sr_ray *ray, int *passed)
 {
     *ray = sr_leave(&x->point, ray->d);
     return ++*passed <= SR_MOST_PASSED;
+}
+
+/* The cone of a sensor ray along its path, for footprints. */
+struct sr_cone {
+    const struct sr_path_start *start;
+    bool is_wanted;
+    float spread; // [1]
+    float width;  // at the path's last surface [m]
+};
+
+static inline struct sr_cone sr_cone_of(const struct sr_path_start *start, bool is_wanted)
+{
+    return (struct sr_cone){start, is_wanted, is_wanted ? 0.5f * (sr_length(start->dddx) + sr_length(start->dddy)) : 0,
+                            0};
+}
+
+/* The footprint of the path at x; first: NULL, or the copy of its first surface. Before x is shaded. */
+static inline void sr_cone_meet(struct sr_cone *c, struct sr_hit *x, bool is_first, bool is_scattered,
+                                struct sr_hit *first)
+{
+    if (!c->is_wanted || !x->material)
+        return;
+    sr_path_footprint(c->start, x, is_first, is_scattered, c->spread, &c->width);
+    if (is_first && first)
+        first->point = x->point;
 }
 
 #endif

@@ -60,7 +60,7 @@ static sr_spectrum simple_path_L(const void *self, const struct sr_scene *scene,
         struct sr_bsdf bsdf;
         struct sr_frame frame;
         if (!sr_shade(&x, ray.d, u_bsdf[3], sr_hash_combine(sampler->key + sampler->sample, group), w, &bsdf, &frame)) {
-            if (!sr_pass(&x, &ray, &passed))
+            if (!sr_pass_by(&x, &ray, &passed))
                 return L;
             continue;
         }

@@ -6,6 +6,7 @@
  * theta' by the shading normal, theta by the geometric one, wi toward the light: the adjoint of the scattering that
  * paths from a sensor see (E. Veach, Robust Monte Carlo methods, 1997, 5.3). Carrying little, paths end by lot. */
 #include "integrator/vertices.h"
+#include "integrator/shade.h"
 
 float sr_vertex_density(float pdf_direction, const struct sr_vertex *from, const struct sr_vertex *to)
 {
@@ -94,7 +95,7 @@ int sr_walk_vertices(const struct sr_walk *walk, struct sr_ray ray, sr_spectrum 
                 walk->first->point = hit.point;
             x->x = hit.point;
             sr_sample8(walk->sampler, group, &u_light, &u_bsdf);
-            uint32_t seed = walk->sampler->key + walk->sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu;
+            uint32_t seed = sr_shade_seed(walk->sampler, group);
             sr_material_shade(hit.material, &x->x, sr_neg(ray.d), u_bsdf[3], seed, walk->w, &x->bsdf, &x->frame);
         }
         if (!x->bsdf.model) { // an interface: the path goes on as it was

@@ -11,8 +11,9 @@
  */
 #include "integrator/flight.h"
 #include "integrator/path.h"
+#include "integrator/shade.h"
 
-enum { GROUPS = 3, MOST_PASSED = 1000 };
+enum { GROUPS = 3 };
 
 static const struct sr_param params[] = {
     SR_PATH_PARAMS(1),
@@ -146,8 +147,7 @@ static sr_spectrum walk(struct walk *k, int max_depth, const struct sr_path_star
     struct sr_carried c = {.f = SR_ONE, .q = SR_ONE, .r = SR_BLACK, .L = SR_BLACK};
     float eta_scale = 1;       // what refraction has made of f, and will undo [1]
     bool is_scattered = false; // by more than mirrors and clear glass
-    bool has_footprints = sr_scene_has_footprints(k->scene);
-    float width = 0, spread = has_footprints ? 0.5f * (sr_length(start->dddx) + sr_length(start->dddy)) : 0;
+    struct sr_cone cone = sr_cone_of(start, sr_scene_has_footprints(k->scene));
     struct sr_point from = {.time = ray.time}; // where the path was scattered last
     float depth = 0; // optical depth that the first wavelength may go until the next scattering
     int passed = 0;
@@ -163,7 +163,7 @@ static sr_spectrum walk(struct walk *k, int max_depth, const struct sr_path_star
         if (flown < bounce) // behind an interface, the flight goes on
             depth = -log1pf(-sr_sample4(sampler, group + 2)[0]);
         flown = bounce;
-        bool is_seen = bounce == 0 && (first || has_footprints);
+        bool is_seen = bounce == 0 && (first || cone.is_wanted);
         ray.t_max = INFINITY;
         if (medium && medium->model->is_uniform) {
             if (known != medium)
@@ -212,30 +212,20 @@ static sr_spectrum walk(struct walk *k, int max_depth, const struct sr_path_star
         }
         if (x.light != SR_NO_LIGHT)
             receive_from_hit(k, &from, ray.d, &x, &c);
-        struct sr_bsdf bsdf = {.model = NULL};
-        struct sr_frame frame;
-        uint32_t seed = sampler->key + sampler->sample * 0x9e3779b9u + group * 0x85ebca6bu;
         if (x.material && bounce == max_depth)
             return c.L;
-        if (x.material) {
-            if (has_footprints)
-                sr_path_footprint(start, &x, bounce == 0, is_scattered, spread, &width);
-            if (first && bounce == 0)
-                first->point = x.point;
-            bool was_whole = !sr_wavelengths_secondary_terminated(&k->w);
-            if (x.is_plain)
-                sr_material_shade_plain(x.material, x.lambert, &x.point, sr_neg(ray.d), u_scatter[3], seed, &k->w,
-                                        &bsdf, &frame);
-            else
-                sr_material_shade(x.material, &x.point, sr_neg(ray.d), u_scatter[3], seed, &k->w, &bsdf, &frame);
-            if (was_whole && sr_wavelengths_secondary_terminated(&k->w))
-                keep_first(&c);
-        }
-        if (!bsdf.model) { // an interface: the path goes on as it was
-            if (++passed > MOST_PASSED)
-                return c.L;
+        sr_cone_meet(&cone, &x, bounce == 0, is_scattered, first);
+        struct sr_bsdf bsdf;
+        struct sr_frame frame;
+        uint32_t seed = sr_shade_seed(sampler, group);
+        bool was_whole = !sr_wavelengths_secondary_terminated(&k->w),
+             scatters = sr_shade_plain(&x, ray.d, u_scatter[3], seed, &k->w, &bsdf, &frame);
+        if (was_whole && sr_wavelengths_secondary_terminated(&k->w))
+            keep_first(&c);
+        if (!scatters) { // an interface: the path goes on as it was
             medium = sr_hit_medium(&x, ray.d, medium);
-            ray = sr_leave(&x.point, ray.d);
+            if (!sr_pass_by(&x, &ray, &passed))
+                return c.L;
             continue;
         }
 

@@ -119,8 +119,8 @@ static void multiplier(const struct row *row)
 }
 static void amplification(const struct row *row)
 {
-    struct estimate L989 =
-        sphere_radiance(0.989, 512); // the same random numbers: most of the chance cancels, which is not counted here
+    // the same random numbers: most of the chance cancels, which is not counted here
+    struct estimate L989 = sphere_radiance(0.989, 512);
     check(row, "path",
           (struct estimate){L989.mean / L990.mean,
                             L989.mean / L990.mean * hypot(L989.error / L989.mean, L990.error / L990.mean),

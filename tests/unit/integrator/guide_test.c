@@ -2,7 +2,7 @@
 /* What is learned of directions: drawn as its density says, the same in any order, other in other places. */
 #include "test.h"
 
-#include "integrator/guide.h"
+#include "integrator/mixture.h"
 #include "sample/sample.h"
 
 enum { GRID = 16, ROUNDS = 5 };
@@ -76,6 +76,88 @@ TEST(guided_directions_are_drawn_as_their_density_says)
             }
         EXPECT_NEAR(integral, 1, 1e-4);
         EXPECT_CHI2(observed, expected, GRID * GRID);
+    }
+    sr_guide_destroy(g);
+}
+
+/* Directions that lie about +x and a surface's own, which are only those above it: drawn as sr_mixture_pdf says, of
+ * which the integral is 1, and weighed so that f cos is integrated. */
+static void expect_drawn_as_mixed(const struct sr_guide *g, const struct sr_bsdf *bsdf, float share, double most_lost)
+{
+    enum { FINE = 256 };
+    struct sr_frame frame = sr_frame_from_z(sr_normalize((sr_vec3){0.5f, 1, 0.2f}));
+    struct sr_mixture m = {.guide = g,
+                           .cell = cell_at(g, -0.5f),
+                           .share = share,
+                           .bsdf = bsdf,
+                           .frame = &frame,
+                           .wo = sr_normalize((sr_vec3){0.3f, -0.4f, 1})};
+    double observed[GRID * GRID] = {0}, expected[GRID * GRID] = {0}, integral = 0, reflected = 0;
+    uint32_t n = is_slow_build() ? 20000 : 200000;
+    for (int i = 0; i < FINE * FINE; ++i) {
+        int x = i % FINE, y = i / FINE;
+        sr_vec3 w = sr_equal_area_square_to_sphere((sr_vec2){((float)x + 0.5f) / FINE, ((float)y + 0.5f) / FINE}),
+                wi = sr_to_local(&frame, w);
+        float pdf_bsdf;
+        double f = (double)sr_bsdf_f_pdf(bsdf, m.wo, wi, SR_RADIANCE, &pdf_bsdf)[0],
+               area = 4 * (double)SR_PI / (FINE * FINE), p = (double)sr_mixture_pdf(&m, w, pdf_bsdf) * area;
+        integral += p;
+        reflected += f * (double)sr_abs_cos_theta(wi) * area;
+        expected[x * GRID / FINE + GRID * (y * GRID / FINE)] += p * n;
+    }
+    struct sr_tally gained = {0};
+    double drawn = 0;
+    for (uint32_t i = 0; i < n; ++i) {
+        struct sr_rng rng = sr_rng_seed(i, 78);
+        sr_u4 u = {sr_rng_float(&rng), sr_rng_float(&rng), sr_rng_float(&rng), 0};
+        struct sr_bsdf_sample s;
+        sr_spectrum gain = SR_BLACK;
+        struct sr_guide_record r = {0};
+        if (sr_mixture_sample(&m, u, false, &s, &gain, &r)) {
+            sr_vec2 q = sr_equal_area_sphere_to_square(r.w);
+            observed[(int)(q.x * GRID) % GRID + GRID * ((int)(q.y * GRID) % GRID)] += 1;
+            drawn += 1;
+        }
+        sr_tally_add(&gained, (double)gain[0]);
+    }
+    printf("  share %.3g: integral of the density %.5f, drawn %.5f; reflected %.5f, by the draws %.5f +- %.2g\n",
+           (double)share, integral, drawn / n, reflected, gained.mean, sr_tally_standard_error(&gained));
+    EXPECT(integral < 1 + 2e-4 && integral > 1 - most_lost - 2e-4);
+    EXPECT_NEAR(drawn / n, integral, 5 * sqrt(most_lost / n) + 2e-4);
+    EXPECT_CHI2(observed, expected, GRID * GRID);
+    EXPECT_MEAN(gained, reflected);
+    EXPECT(sr_tally_standard_error(&gained) < (is_slow_build() ? 0.02 : 0.006) * reflected);
+}
+
+TEST(guided_and_own_directions_are_drawn_as_their_mixture_says)
+{
+    struct sr_guide *g = learned(false);
+    struct sr_bsdf lambert = {.model = &sr_bsdf_diffuse}, metal = {.model = sr_bsdf_model_find("conductor")};
+    *(struct sr_bsdf_diffuse *)lambert.data = (struct sr_bsdf_diffuse){SR_BLACK + 0.7f};
+    *(struct sr_bsdf_conductor *)metal.data =
+        (struct sr_bsdf_conductor){SR_BLACK + 0.2f, SR_BLACK + 3.0f, {0.5f, 0.5f}};
+    for (int k = 1; k < SR_GUIDE_SHARES; k += 3) {
+        expect_drawn_as_mixed(g, &lambert, sr_guide_shares[k], 0);
+        expect_drawn_as_mixed(g, &metal, sr_guide_shares[k],
+                              0.2); // some of a facet's reflections would go below the surface
+    }
+    sr_guide_destroy(g);
+}
+
+/* The estimate's square that each share would have had, from a direction that was drawn otherwise. */
+TEST(records_tell_what_other_shares_would_have_been_worth)
+{
+    struct sr_guide *g = learned(false);
+    sr_vec3 p = {-0.5f, 0.5f, 0.5f}, up = {0, 1, 0};
+    struct sr_guide_record r = {
+        .pdf = 0.3f, .pdf_bsdf = 0.1f, .pdf_guide = 0.9f, .noise = 1, .place = sr_guide_place(g, p, up), .kind = 1};
+    r.cell = sr_guide_find(g, &r.place);
+    const struct sr_guide_cell *cell = sr_guide_cell(g, r.cell);
+    EXPECT(cell->has_light && cell->moments[1][0] == 0);
+    sr_guide_add(g, &r);
+    for (int k = 0; k < SR_GUIDE_SHARES; ++k) {
+        double a = (double)sr_guide_shares[k], pdf = (1 - a) * 0.1 + a * 0.9;
+        EXPECT_RELATIVE((double)cell->moments[1][k] / (double)cell->moments[1][0], 0.1 / pdf, 1e-6);
     }
     sr_guide_destroy(g);
 }
