@@ -280,12 +280,12 @@ sr_vec3 sr_inverse_vector(const struct sr_transform *t, sr_vec3 v)
 
 sr_vec3 sr_transform_point_error(const struct sr_transform *t, sr_vec3 p, sr_vec3 p_error, sr_vec3 *error)
 {
-    float bound[3], gamma3 = sr_gamma(3);
+    float bound[3], gamma4 = sr_gamma(4); // a product, two sums, and that with the translation
     for (int i = 0; i < 3; ++i) {
         const float *row = t->m[i];
         float size = fabsf(row[0] * p.x) + fabsf(row[1] * p.y) + fabsf(row[2] * p.z) + fabsf(row[3]);
         float carried = fabsf(row[0]) * p_error.x + fabsf(row[1]) * p_error.y + fabsf(row[2]) * p_error.z;
-        bound[i] = gamma3 * size + (1 + gamma3) * carried;
+        bound[i] = gamma4 * size + (1 + gamma4) * carried;
     }
     *error = (sr_vec3){bound[0], bound[1], bound[2]};
     return apply_to_point(t->m, p);

@@ -108,6 +108,9 @@ bool scene_may_have_slipped(const struct sr_scene *scene, const struct sr_ray *r
  * them, all of which must meet something before one is believed: else silhouettes would grow by as much. Only for rays
  * without end. */
 sr_vec3 scene_beside(sr_vec3 d, int attempt);
+/* Of its way a segment is asked again: beside its end there may be the lamp that it aims at. One that meets the lamp at
+ * a cosine of 2^-16 / (1 - share) or more stays clear of it. */
+#define SLIP_SHARE (1 - 0x1p-6f)
 void scene_build_embree(struct sr_scene *scene, int threads);
 
 /* Which primitive of the shape the ray caster means; on paired triangles *at is put right. */

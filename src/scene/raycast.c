@@ -45,7 +45,7 @@ static bool cast_beside(const struct sr_scene *scene, const struct sr_ray *ray, 
     for (int i = 0; i < SLIP_ATTEMPTS + (isinf(ray->t_max) ? SLIP_RING : 0); ++i) {
         struct RTCIntersectContext context;
         rtcInitIntersectContext(&context);
-        fill_ray(&rh->ray, ray->o, scene_beside(ray->d, i), ray->time, ray->t_max);
+        fill_ray(&rh->ray, ray->o, scene_beside(ray->d, i), ray->time, SLIP_SHARE * ray->t_max);
         rh->hit.geomID = RTC_INVALID_GEOMETRY_ID;
         rtcIntersect1(scene->embree, &context, rh);
         bool has_met = rh->hit.geomID != RTC_INVALID_GEOMETRY_ID;
@@ -55,10 +55,10 @@ static bool cast_beside(const struct sr_scene *scene, const struct sr_ray *ray, 
     return rh->hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
-static bool is_free(const struct sr_scene *scene, const struct sr_ray *ray, sr_vec3 d)
+static bool is_free(const struct sr_scene *scene, const struct sr_ray *ray, sr_vec3 d, float t_max)
 {
     struct RTCRay r;
-    fill_ray(&r, ray->o, d, ray->time, ray->t_max);
+    fill_ray(&r, ray->o, d, ray->time, t_max);
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded1(scene->embree, &context, &r);
@@ -135,12 +135,12 @@ bool sr_raycast_bare(const struct sr_scene *scene, const struct sr_ray *ray, str
 
 bool sr_is_free(const struct sr_scene *scene, const struct sr_ray *ray)
 {
-    if (!is_free(scene, ray, ray->d))
+    if (!is_free(scene, ray, ray->d, ray->t_max))
         return false;
     if (!scene->closed_count || !scene_may_have_slipped(scene, ray))
         return true;
     for (int i = 0; i < SLIP_ATTEMPTS + (isinf(ray->t_max) ? SLIP_RING : 0); ++i) {
-        bool free = is_free(scene, ray, scene_beside(ray->d, i));
+        bool free = is_free(scene, ray, scene_beside(ray->d, i), SLIP_SHARE * ray->t_max);
         if (free == (i >= SLIP_ATTEMPTS))
             return free;
     }

@@ -129,8 +129,8 @@ static inline const struct sr_medium *sr_hit_medium(const struct sr_hit *hit, sr
     return m->model ? m : NULL;
 }
 bool sr_scene_has_footprints(const struct sr_scene *scene); // whether any material looks at them
-bool sr_scene_has_mirrors(
-    const struct sr_scene *scene); // whether any material, seen straight on, is a mirror or clear glass
+// whether any material, seen straight on, is a mirror or clear glass
+bool sr_scene_has_mirrors(const struct sr_scene *scene);
 bool sr_scene_has_subsurface(const struct sr_scene *scene); // whether light comes out of any material elsewhere
 bool sr_scene_moves(const struct sr_scene *scene);          // whether anything does while the shutter is open
 struct sr_box sr_scene_bounds(const struct sr_scene *scene);

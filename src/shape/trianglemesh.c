@@ -15,8 +15,8 @@
 
 static const float min_solid_angle = 3e-4f,
                    max_solid_angle = 6.22f; // [sr] within, the spherical triangle is well-conditioned
-static const float small_extent2 =
-    1.5f; // (longest edge / distance)^2 below which area sampling is taken at once: 15 % faster for 1 % more variance
+// (longest edge / distance)^2 below which area sampling is taken at once: 15 % faster for 1 % more variance
+static const float small_extent2 = 1.5f;
 
 #define T struct sr_shape_mesh
 static const struct sr_param params[] = {

@@ -180,6 +180,10 @@ struct leaks cast_from_inside(const struct closed_mesh *m, enum aim aim, uint64_
         struct sr_ray ray = {.o = o, .d = d, .t_max = INFINITY};
         struct sr_hit hit;
         bool leaks = !sr_raycast_bare(m->scene, &ray, &hit), shadow_leaks = i % 8 == 0 && sr_is_free(m->scene, &ray);
+        if (i % 8 == 1) { // to a place outside
+            ray.t_max = 4 * R / sr_length(d);
+            shadow_leaks = sr_is_free(m->scene, &ray);
+        }
         out.leaks += leaks;
         out.shadows += shadow_leaks;
         if (leaks || shadow_leaks)
