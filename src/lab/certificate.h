@@ -114,8 +114,8 @@ void lab_find(struct certifying *c, enum check check, double measured, bool fail
 /* Only where nothing was looked at in any set. */
 void lab_skip(struct certifying *c, enum check check, const char *why);
 
-void lab_check_pairs(
-    struct certifying *c); // finite, not negative, reciprocal, adjoint, agreeing, of the lobes it tells
+// finite, not negative, reciprocal, adjoint, agreeing, of the lobes it tells
+void lab_check_pairs(struct certifying *c);
 void lab_check_extremes(struct certifying *c); // grazing and vertical
 void lab_check_double(struct certifying *c);
 void lab_check_sampling(struct certifying *c); // normalisation, chi-square, moments of light
@@ -124,8 +124,9 @@ void lab_check_energy(struct certifying *c);   // largest albedo, closed form
 void lab_check_end(struct certifying *c, const char *name, bool at_max);
 /* Largest E(wo) [1] over wavelengths by n samples that fill the square evenly; *k: of which wavelength. */
 double lab_albedo(struct subject *s, sr_vec3 wo, uint32_t n, int *k);
-/* Whether E(wo) at a wavelength is above what is allowed, by fresh random samples; their mean. */
-bool lab_gains_energy(struct certifying *c, sr_vec3 wo, int k, double *mean);
+/* Whether E(wo) at a wavelength is above what is allowed, by fresh random samples; their mean and its standard error.
+ */
+bool lab_gains_energy(struct certifying *c, sr_vec3 wo, int k, double *mean, double *error);
 /* What f and pdf change under directions that are a few roundings apart: the largest of sixteen movements, fourfold. */
 void lab_sensitivity(const struct subject *s, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, sr_spectrum *df,
                      float *dpdf);

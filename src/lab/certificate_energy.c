@@ -87,10 +87,9 @@ static bool exceeds(struct certifying *c, sr_vec3 wo, int k, uint32_t n, double 
     return is_above;
 }
 
-bool lab_gains_energy(struct certifying *c, sr_vec3 wo, int k, double *mean)
+bool lab_gains_energy(struct certifying *c, sr_vec3 wo, int k, double *mean, double *error)
 {
-    double error;
-    return exceeds(c, wo, k, c->samples / 2, mean, &error);
+    return exceeds(c, wo, k, c->samples / 2, mean, error);
 }
 
 static void check_closed_form(struct certifying *c, uint32_t n)

@@ -10,6 +10,7 @@
  * change, as a share of the larger value. */
 #include "lab/certificate.h"
 
+#include <stdio.h>
 #include <string.h>
 
 // not made a unit vector again: the length of one is off by as much
@@ -408,10 +409,19 @@ void lab_check_pairs(struct certifying *c)
 
 /* ---- extremes ---- */
 
+// of a mean of chance; nothing of one that fills the square evenly
+static const char *uncertainty(double error, char text[24])
+{
+    text[0] = 0;
+    if (error > 0)
+        snprintf(text, 24, " +- %.2g", error);
+    return text;
+}
+
 void lab_check_extremes(struct certifying *c)
 {
     struct subject *s = c->subject;
-    char set[90];
+    char set[90], noise[24];
     lab_describe(s, 0, set, sizeof set);
     const double deg[] = {89, 89.9, 89.99, 89.9999};
     for (int i = 0; i < 4; ++i)
@@ -422,9 +432,10 @@ void lab_check_extremes(struct certifying *c)
             for (int k = 0; k < 24; ++k)
                 ok &= lab_check_values(c, CHECK_GRAZING, CHECK_GRAZING, wo, lab_partner(c, wo));
             int at;
-            double E = ok ? lab_albedo(s, wo, 256, &at) : 0;
-            bool gains = E > s->largest_albedo * (1 + 1e-4) && lab_gains_energy(c, wo, at, &E);
-            lab_find(c, CHECK_GRAZING, E, gains, "albedo %.6g at theta_o %.6g deg; %s", E, deg[i], set);
+            double E = ok ? lab_albedo(s, wo, 256, &at) : 0, error = 0;
+            bool gains = E > s->largest_albedo * (1 + 1e-4) && lab_gains_energy(c, wo, at, &E, &error);
+            lab_find(c, CHECK_GRAZING, E, gains, "albedo %.6g%s at theta_o %.6g deg; %s", E, uncertainty(error, noise),
+                     deg[i], set);
         }
     for (int side = 0; side < 2; ++side) {
         sr_vec3 n = {0, 0, side ? -1.0f : 1.0f};
@@ -457,7 +468,7 @@ void lab_check_extremes(struct certifying *c)
 void lab_check_end(struct certifying *c, const char *name, bool at_max)
 {
     struct subject *s = c->subject;
-    char set[90];
+    char set[90], noise[24];
     lab_describe(s, 0, set, sizeof set);
     bool ok = true;
     for (int i = 0; i < 200; ++i) {
@@ -469,9 +480,9 @@ void lab_check_end(struct certifying *c, const char *name, bool at_max)
     for (int i = 0; i < 6 && ok; ++i) {
         sr_vec3 wo = lab_anywhere(&c->rng);
         int k;
-        double E = lab_albedo(s, wo, 256, &k);
-        bool gains = E > s->largest_albedo * (1 + 1e-4) && lab_gains_energy(c, wo, k, &E);
-        lab_find(c, CHECK_ENDS, E, gains, "%s at its %s: albedo %.6g at theta_o %.4g deg; %s", name,
-                 at_max ? "greatest" : "least", E, lab_theta_deg(wo), set);
+        double E = lab_albedo(s, wo, 256, &k), error = 0;
+        bool gains = E > s->largest_albedo * (1 + 1e-4) && lab_gains_energy(c, wo, k, &E, &error);
+        lab_find(c, CHECK_ENDS, E, gains, "%s at its %s: albedo %.6g%s at theta_o %.4g deg; %s", name,
+                 at_max ? "greatest" : "least", E, uncertainty(error, noise), lab_theta_deg(wo), set);
     }
 }

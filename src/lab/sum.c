@@ -17,7 +17,8 @@ static uint32_t lobes(const void *self)
     return all;
 }
 
-static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *pdf)
+__attribute__((noinline)) static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode,
+                                                   float *pdf)
 {
     const struct sum *m = self;
     sr_spectrum f = SR_BLACK;
