@@ -13,15 +13,12 @@ import hashlib
 import json
 import os
 import pathlib
-import random
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-SCENE = ROOT / "scenes" / "cornell-box.pbrt"
+from common import SCENE, SPECTRA, Wrong, expect, run, scene_of
+
 # What a film can be: sums alone, replicates, splats, two halves, spectra.
 KINDS = {
     "path": [],
@@ -32,24 +29,6 @@ KINDS = {
 }
 
 
-class Wrong(Exception):
-    pass
-
-
-def expect(condition, what):
-    if not condition:
-        raise Wrong(what)
-
-
-def scene_of(folder, kind):
-    if kind != "spectra":
-        return SCENE
-    text = SCENE.read_text().replace('Film "rgb"', 'Film "spectral" "integer nbuckets" 8')
-    scene = folder / "spectra.pbrt"
-    scene.write_text(text)
-    return scene
-
-
 class Render:
     """One picture, and the file it is to have."""
 
@@ -58,7 +37,7 @@ class Render:
         self.out = folder / f"{kind}.exr"
         self.keep = folder / f"{kind}.exr.srk"
         self.options = ["--resolution", f"{size},{size}", "--spp", str(spp), *KINDS[kind]]
-        self.scene = scene_of(folder, kind)
+        self.scene = scene_of(folder / f"{kind}.pbrt", film=SPECTRA if kind == "spectra" else None)
         reference = folder / f"{kind}-reference.exr"
         start = time.monotonic()
         done = subprocess.run(self.words(reference, []), capture_output=True, check=True)
@@ -287,48 +266,36 @@ def damages(render, chance, count):
     render.clean()
 
 
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("command", type=pathlib.Path)
-    parser.add_argument("--fault", type=pathlib.Path)
-    for name, most in (("kills", 100), ("signals", 200), ("faults", 330), ("flips", 40)):
-        parser.add_argument(f"--{name}", type=int, default=most)
-    parser.add_argument("--seed", type=int, default=1)
-    a = parser.parse_args()
-    chance = random.Random(a.seed)
-    start = time.monotonic()
-    with tempfile.TemporaryDirectory(dir=os.environ.get("TMPDIR")) as name:
-        folder = pathlib.Path(name)
-        kinds = list(KINDS) if a.kills >= 2 * len(KINDS) else list(KINDS)[:1] + ["bdpt"]
-        renders = {kind: Render(a.command.resolve(), folder, kind) for kind in kinds}
-        path = renders["path"]
-        print(f"one SHA-256 for threads 1, 2, 3, 7 and tiles 1, 5, 8, 16, 33 of each kind; path: {hashlib.sha256(path.bytes).hexdigest()}")
-        for number in (signal.SIGKILL, signal.SIGTERM):
-            killed = chains = 0
-            for kind in kinds if a.kills else []:
-                k, c = kills(renders[kind], chance, (a.kills + len(kinds) - 1) // len(kinds), number)
-                killed, chains = killed + k, chains + c
-            print(f"{signal.Signals(number).name}: {killed} kills in {chains} chains of {', '.join(kinds)}, each resumed: all final files the same")
-        print(f"refused: each of {refusals(path)} other settings")
-        if a.flips:
-            damages(path, chance, a.flips)
-            print(f"damage: {a.flips} checkpoints with a flipped bit: all found")
-        if a.signals:
-            waits, seconds = interrupts(path, chance, a.signals)
-            print(f"interrupts: {len(waits)} took {waits[len(waits) // 2]:.3f} s (median), {waits[int(0.99 * (len(waits) - 1))]:.3f} s (p99); "
-                  f"a second signal: at most {max(seconds, default=0):.3f} s of {len(seconds)}; a storm: no deadlock")
-        if a.faults and a.fault:
-            hit, behind = faults(path, chance, a.fault.resolve(), a.faults)
-            print(f"faults: {sum(hit.values())} injected ({', '.join(f'{n} {w}' for w, n in sorted(hit.items()))}): a whole checkpoint after each, "
-                  f"the same bytes in the end; {behind} ended with 4")
-            print(f"full disk: {full_disk(path, a.fault.resolve(), 1 if a.faults >= 100 else 4)} calls of writing the picture")
-    print(f"{time.monotonic() - start:.0f} s")
-    return 0
+def soak(a, chance, folder):
+    kinds = list(KINDS) if a.kills >= 2 * len(KINDS) else list(KINDS)[:1] + ["bdpt"]
+    renders = {kind: Render(a.command.resolve(), folder, kind) for kind in kinds}
+    path = renders["path"]
+    print(f"one SHA-256 for threads 1, 2, 3, 7 and tiles 1, 5, 8, 16, 33 of each kind; path: {hashlib.sha256(path.bytes).hexdigest()}")
+    for number in (signal.SIGKILL, signal.SIGTERM):
+        killed = chains = 0
+        for kind in kinds if a.kills else []:
+            k, c = kills(renders[kind], chance, (a.kills + len(kinds) - 1) // len(kinds), number)
+            killed, chains = killed + k, chains + c
+        print(f"{signal.Signals(number).name}: {killed} kills in {chains} chains of {', '.join(kinds)}, each resumed: all final files the same")
+    print(f"refused: each of {refusals(path)} other settings")
+    if a.flips:
+        damages(path, chance, a.flips)
+        print(f"damage: {a.flips} checkpoints with a flipped bit: all found")
+    if a.signals:
+        waits, seconds = interrupts(path, chance, a.signals)
+        print(f"interrupts: {len(waits)} took {waits[len(waits) // 2]:.3f} s (median), {waits[int(0.99 * (len(waits) - 1))]:.3f} s (p99); "
+              f"a second signal: at most {max(seconds, default=0):.3f} s of {len(seconds)}; a storm: no deadlock")
+    if a.faults and a.fault:
+        hit, behind = faults(path, chance, a.fault.resolve(), a.faults)
+        print(f"faults: {sum(hit.values())} injected ({', '.join(f'{n} {w}' for w, n in sorted(hit.items()))}): a whole checkpoint after each, "
+              f"the same bytes in the end; {behind} ended with 4")
+        print(f"full disk: {full_disk(path, a.fault.resolve(), 1 if a.faults >= 100 else 4)} calls of writing the picture")
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except Wrong as wrong:
-        print(f"wrong: {wrong}", file=sys.stderr)
-        sys.exit(1)
+    options = argparse.ArgumentParser()
+    options.add_argument("command", type=pathlib.Path)
+    options.add_argument("--fault", type=pathlib.Path)
+    for name, most in (("kills", 100), ("signals", 200), ("faults", 330), ("flips", 40)):
+        options.add_argument(f"--{name}", type=int, default=most)
+    run(options, soak)

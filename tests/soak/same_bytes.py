@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: MIT
 """One SHA-256 of each picture, whoever renders it: threads x tiles x ranks, parts and merges, renders killed and gone on with by others.
 
-Usage: same_bytes.py STERADIAN [STERADIAN_MPI] [--quick] [--slow] [--kinds A,B] [--kills N] [--seed S] [--markdown]
+Usage: same_bytes.py STERADIAN [STERADIAN_MPI] [--quick] [--slow] [--kinds A,B] [--renders N] [--kills N] [--seed S] [--markdown]
 
---quick: a few of all combinations, for tests; --slow: no limits of time (sanitizers). Without STERADIAN_MPI, or without mpirun, ranks are
-left out. Exits 1 at the first that is wrong, and tells the command.
+--quick: a few of all combinations, for tests, and ranks and kills of a few kinds alone; --renders: so many of all combinations, by
+chance; --slow: small, and no limits of time (sanitizers). Without STERADIAN_MPI, or without mpirun, ranks are left out. Exits 1 at the
+first that is wrong, and tells the command.
 """
 import argparse
 import hashlib
@@ -13,17 +14,15 @@ import itertools
 import json
 import os
 import pathlib
-import random
+import re
 import shutil
 import signal
 import subprocess
-import sys
-import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-SCENE = ROOT / "scenes" / "cornell-box.pbrt"
-WIDTH, HEIGHT = 37, 30  # no multiple of a tile
+from common import SMOKE, SPECTRA, expect, run, scene_of
+
+SIZE, SLOW_SIZE = "37,30", "19,14"  # no multiples of a tile
 THREADS, TILES, RANKS = [1, 2, 3, 7], [5, 8, 16], [1, 2, 3, 4]
 MOST_S = 5  # [s] from a rank's death to the end of the job
 # Open MPI keeps what it has allocated: to look for leaks would find its own
@@ -33,34 +32,41 @@ ENVIRONMENT = {**os.environ, "ASAN_OPTIONS": "detect_leaks=0", "OMPI_ALLOW_RUN_A
 class Kind:
     """What a film can hold, and how its sums come about. factor: so many times the samples take some seconds, to be killed in."""
 
-    def __init__(self, options, factor, film=None, has_parts=True):
-        self.options, self.factor, self.film, self.has_parts = options, factor, film, has_parts
+    def __init__(self, options, factor, film=None, world="", has_parts=True):
+        self.options, self.factor, self.film, self.world, self.has_parts = options, factor, film, world, has_parts
 
 
+def by(estimator, factor=64, **more):
+    return Kind(["--estimator", estimator], factor, **more)
+
+
+# each estimator that makes pictures is one of them: the program is asked which there are
 KINDS = {
-    "path": Kind([], 64),
+    "path": by("path"),
     "lean path": Kind(["--no-aov"], 64),
     "replicates": Kind(["--replicates", "4"], 64),
     "adaptive": Kind(["--adaptive", "--spp", "32"], 32, has_parts=False),
-    "bdpt": Kind(["--estimator", "bdpt"], 32),
+    "bdpt": by("bdpt", 32),
     "bdpt replicates": Kind(["--estimator", "bdpt", "--replicates", "2", "--no-aov"], 32),
-    "lightpath": Kind(["--estimator", "lightpath"], 32),
-    "caustics": Kind(["--estimator", "caustics"], 32),
-    "guided path": Kind(["--estimator", "guidedpath,guiding=on"], 32),
-    "spectra": Kind([], 32, film='"spectral" "integer nbuckets" 8'),
+    "lightpath": by("lightpath", 32),
+    "caustics": by("caustics", 32),
+    "guided path": by("guidedpath,guiding=on", 32),
+    "guided path by itself": by("guidedpath", 32),
+    "roulette path": by("roulettepath,learned=on", 32),
+    "roulette path by itself": by("roulettepath", 32),
+    "volpath": by("volpath", 32, world=SMOKE),
+    "simplevolpath": by("simplevolpath", 32, world=SMOKE),
+    "simplepath": by("simplepath"),
+    "randomwalk": by("randomwalk"),
+    "ambientocclusion": by("ambientocclusion", 256),
+    "strategies": by("estimator,strategies=cosine-hemisphere+light-area"),
+    "spectra": Kind([], 32, film=SPECTRA),
     "gbuffer": Kind(["--sampler", "independent"], 64, film='"gbuffer"'),
 }
+NO_PICTURES = {"quadrature"}
+QUICK = {"adaptive", "bdpt", "guided path"}  # by ranks and killed even in a hurry
 SPP = 16
 PARTITIONS = [[8], [4, 8, 12], [1, 2, 4], [3, 7, 8, 15], [5, 11], [1], list(range(1, SPP))]  # where the samples 0 to SPP are cut
-
-
-class Wrong(Exception):
-    pass
-
-
-def expect(condition, what):
-    if not condition:
-        raise Wrong(what)
 
 
 class Picture:
@@ -68,17 +74,14 @@ class Picture:
 
     def __init__(self, p, name, factor=1):
         self.p, self.name, self.kind = p, name, KINDS[name]
-        self.scene = SCENE
-        if self.kind.film:
-            self.scene = p.folder / f"{name}.pbrt"
-            self.scene.write_text(SCENE.read_text().replace('Film "rgb"', "Film " + self.kind.film))
+        self.scene = scene_of(p.folder / f"{name}.pbrt", self.kind.film, self.kind.world)
         options = list(self.kind.options)
         if "--spp" in options:
             at = options.index("--spp") + 1
             options[at] = str(factor * int(options[at]))
         else:
             options += ["--spp", str(factor * SPP)]
-        self.options = ["--resolution", f"{WIDTH},{HEIGHT}", *options]
+        self.options = ["--resolution", SLOW_SIZE if p.is_slow else SIZE, *options]
         self.out = p.folder / f"{name}.exr"
         self.keep = p.folder / f"{name}.exr.srk"
         start = time.monotonic()
@@ -131,9 +134,9 @@ def who(chance):
     return ["--threads", chance.choice(THREADS), "--tile", chance.choice(TILES)]
 
 
-def matrix(picture, chance, sample):
+def matrix(picture, chance, sample, by_ranks):
     """Threads x tiles x (a process alone, ranks): all of them, or a sample."""
-    all_of_them = list(itertools.product(THREADS, TILES, [0, *RANKS] if picture.p.mpi else [0]))
+    all_of_them = list(itertools.product(THREADS, TILES, [0, *RANKS] if by_ranks else [0]))
     for threads, tile, n in chance.sample(all_of_them, sample) if sample else all_of_them:
         more = ["--threads", threads, "--tile", tile]
         picture.same(picture.ranks(n, *more) if n else picture.alone(*more))
@@ -144,7 +147,7 @@ def parts(picture, chance, sample):
     """Each partition: parts by any threads and tiles, killed and gone on with now and then; merged in any order, at once or in two steps."""
     if not picture.kind.has_parts:
         return 0
-    for cuts in chance.sample(PARTITIONS, sample) if sample else PARTITIONS:
+    for cuts in chance.sample(PARTITIONS[:2], sample) if sample else PARTITIONS:
         ends = [0, *cuts, SPP]
         files = []
         for begin, end in zip(ends, ends[1:]):
@@ -239,50 +242,55 @@ def kills(picture, chance, count):
     return t
 
 
-def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("command", type=pathlib.Path)
-    parser.add_argument("mpi", type=pathlib.Path, nargs="?")
-    parser.add_argument("--kinds", default=",".join(KINDS))
-    parser.add_argument("--kills", type=int, default=4, help="of each kind")
-    parser.add_argument("--seed", type=int, default=1)
-    for flag in ("quick", "slow", "markdown"):
-        parser.add_argument(f"--{flag}", action="store_true")
-    a = parser.parse_args()
-    chance = random.Random(a.seed)
+def expect_all_estimators(p):
+    """None that the program knows is without a kind."""
+    code, out, err = p.run([p.command, "render", "--estimator", "help"])
+    known = set(re.findall(r"^  (\w+) ", out.split("\nor strategies")[0], re.MULTILINE))
+    expect(code == 0 and "path" in known, f"--estimator help: exit {code}: {err}")
+    tried = {"path"} | {option.split(",")[0] for kind in KINDS.values() for option in kind.options[1:2] if kind.options[0] == "--estimator"}
+    expect(known - NO_PICTURES == tried, f"estimators without a kind: {known - NO_PICTURES - tried}; kinds without an estimator: {tried - known}")
+    for name in NO_PICTURES:
+        code, _, err = p.run([p.command, "render", str(scene_of(None)), "--estimator", name, "-o", "none.exr", "--resolution", "2,2", "--spp", "1"])
+        expect(code == 2 and "makes no pictures" in err, f"{name} makes pictures, and has no kind: exit {code}: {err}")
+
+
+def soak(a, chance, folder):
     has_ranks = a.mpi and a.mpi.exists() and shutil.which("mpirun")
     if not has_ranks:
         print("without ranks: there is no mpirun, or steradian-mpi has not been built (Debian: openmpi-bin libopenmpi-dev)")
     names = a.kinds.split(",")
-    total, start = Tally(), time.monotonic()
+    total = Tally()
     all_renders = all_merges = 0
-    with tempfile.TemporaryDirectory(dir=os.environ.get("TMPDIR")) as folder:
-        p = Programs(a.command.resolve(), a.mpi.resolve() if has_ranks else None, pathlib.Path(folder), a)
-        for name in names:
-            picture = Picture(p, name)
-            renders = matrix(picture, chance, 2 if a.quick else 0)
-            merges = parts(picture, chance, 1 if a.quick else 0)
-            t = kills(Picture(p, name, 1 if a.slow else picture.kind.factor // (8 if a.quick else 1)), chance, a.kills) if a.kills else Tally()
-            total += t
-            all_renders, all_merges = all_renders + renders, all_merges + merges
-            took = f"{sorted(t.took)[len(t.took) // 2]:.2f}, {max(t.took):.2f}" if t.took else ""
-            if a.markdown:
-                print(f"| {name} | {renders} | {merges or 'refused'} | {len(t.took)} | {t.lone} | {t.chains} | {t.resumed} | {took} |", flush=True)
-            else:
-                print(f"{name}: {renders} renders, {merges} merges, {len(t.took)} ranks and {t.lone} processes killed in {t.chains} chains, {t.resumed} gone on with "
-                      f"from a checkpoint; {took or '-'} s to end (median, most); {picture.sha[:16]}", flush=True)
+    p = Programs(a.command.resolve(), a.mpi.resolve() if has_ranks else None, folder, a)
+    expect_all_estimators(p)
+    for name in names:
+        picture = Picture(p, name)
+        in_full = not a.quick or name in QUICK
+        renders = matrix(picture, chance, 2 if a.quick else a.renders, in_full and has_ranks)
+        merges = parts(picture, chance, 1 if a.quick else 0)
+        t = kills(Picture(p, name, 1 if a.slow else picture.kind.factor // (8 if a.quick else 1)), chance, a.kills) if a.kills and in_full else Tally()
+        total += t
+        all_renders, all_merges = all_renders + renders, all_merges + merges
+        took = f"{sorted(t.took)[len(t.took) // 2]:.2f}, {max(t.took):.2f}" if t.took else ""
+        if a.markdown:
+            print(f"| {name} | {renders} | {merges or 'refused'} | {len(t.took)} | {t.lone} | {t.chains} | {t.resumed} | {took} |", flush=True)
+        else:
+            print(f"{name}: {renders} renders, {merges} merges, {len(t.took)} ranks and {t.lone} processes killed in {t.chains} chains, {t.resumed} gone on with "
+                  f"from a checkpoint; {took or '-'} s to end (median, most); {picture.sha[:16]}", flush=True)
     took = sorted(total.took)
     print(f"one SHA-256 of each of {len(names)} kinds: {all_renders} renders by threads {THREADS} x tiles {TILES} x ranks {RANKS if has_ranks else '-'}, {all_merges} merges")
     if a.kills:
         print(f"{len(took)} ranks and {total.lone} processes alone killed in {total.chains} chains, {total.resumed} times gone on with from a checkpoint: the same files"
               + (f"; a job ends {took[len(took) // 2]:.2f} s (median), {took[-1]:.2f} s (most) after its rank" if took else ""))
-    print(f"{time.monotonic() - start:.0f} s")
-    return 0
 
 
 if __name__ == "__main__":
-    try:
-        sys.exit(main())
-    except Wrong as wrong:
-        print(f"wrong: {wrong}", file=sys.stderr)
-        sys.exit(1)
+    options = argparse.ArgumentParser()
+    options.add_argument("--kinds", default=",".join(KINDS))
+    options.add_argument("--renders", type=int, default=0, help="of each kind; 0: all")
+    options.add_argument("--kills", type=int, default=4, help="of each kind")
+    for flag in ("quick", "slow", "markdown"):
+        options.add_argument(f"--{flag}", action="store_true")
+    options.add_argument("command", type=pathlib.Path)
+    options.add_argument("mpi", type=pathlib.Path, nargs="?")
+    run(options, soak)
