@@ -200,8 +200,10 @@ int main(int argc, char **argv)
         crew_begin(&crew);
         render_crew = (struct render_crew){
             .hooks = &crew.hooks, .identity = "a rehearsal\n", .threads = threads, .processes = crew.place.renderers};
+        if (!unit_log_open(&crew, unit_log))
+            MPI_Abort(MPI_COMM_WORLD, SR_ERROR_RESOURCE);
         pthread_t thread;
-        if (!unit_log_open(&crew, unit_log) || pthread_create(&thread, NULL, rehearse_in_thread, &r) != 0)
+        if (pthread_create(&thread, NULL, rehearse_in_thread, &r) != 0)
             MPI_Abort(MPI_COMM_WORLD, SR_ERROR_RESOURCE);
         code = pump(&crew, &r.ending);
         pthread_join(thread, NULL);
