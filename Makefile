@@ -6,7 +6,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 OUT ?= out
 SECONDS ?= 60
 
-.PHONY: all render test test-asan test-tsan fuzz soak soak-rays same-bytes mutants validate bench scale pgo wavelengths check format format-reference install clean packages
+.PHONY: all render test test-asan test-tsan fuzz soak soak-rays same-bytes mutants validate bench scale wavelengths check figures format format-reference install clean packages
 
 all: packages
 	@cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release >$(BUILD).log 2>&1 || { cat $(BUILD).log; exit 1; }
@@ -63,15 +63,6 @@ mutants: packages
 soak-rays: all
 	$(BUILD)/sr_soak
 
-# a build that knows what the benchmarks run often; its bytes differ from those of other builds
-pgo: packages
-	cmake -S . -B build-pgo -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF -DSTERADIAN_PGO=generate >build-pgo.log
-	cmake --build build-pgo --parallel $(JOBS) --target sr_bench >>build-pgo.log
-	build-pgo/sr_bench --size 128 --spp 8 --runs 1 >>build-pgo.log
-	build-pgo/sr_bench --bsdf >>build-pgo.log
-	cmake -S . -B build-pgo -DSTERADIAN_PGO=use >>build-pgo.log
-	cmake --build build-pgo --parallel $(JOBS) --target steradian_command sr_bench >>build-pgo.log
-
 bench: all
 	$(BUILD)/sr_bench
 
@@ -96,11 +87,12 @@ figures: all
 format-reference: all
 	$(BUILD)/steradian formats --markdown >docs/format.md
 
+# thrice: what one pass has wrapped the next may lay out again
 format:
-	git ls-files '*.c' '*.h' | xargs clang-format -i
+	for pass in 1 2 3; do git ls-files '*.c' '*.h' | xargs clang-format -i; done
 
 install: all
 	cmake --install $(BUILD) --prefix $(PREFIX)
 
 clean:
-	rm -rf $(BUILD) build-asan build-tsan build-debug build-fuzz build-mutants build-pgo $(BUILD)-w4 $(BUILD)-w16 $(OUT) *.log
+	rm -rf $(BUILD) build-asan build-tsan build-debug build-levels build-fuzz build-mutants $(BUILD)-w4 $(BUILD)-w16 $(OUT) *.log

@@ -28,6 +28,15 @@ elseif(BUILD_SHARED_LIBS)
 endif()
 
 install(TARGETS ${STERADIAN_INSTALLED} EXPORT steradianTargets)
+if(STERADIAN_LTO_COMPILE AND STERADIAN_INSTALLED STREQUAL "steradian" AND CMAKE_OBJCOPY AND NOT IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}")
+  # an ordinary library: with gcc's own form in it, whoever links it would optimise all of it again, for half a minute
+  install(CODE "
+    execute_process(COMMAND \"${CMAKE_OBJCOPY}\" --wildcard --remove-section=.gnu.lto_* --remove-section=.gnu.debuglto_*
+        \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/$<TARGET_FILE_NAME:steradian>\" RESULT_VARIABLE failed)
+    if(failed)
+      message(FATAL_ERROR \"libsteradian.a cannot be made an ordinary library\")
+    endif()")
+endif()
 if(TARGET steradian_command)
   install(TARGETS steradian_command)
 endif()

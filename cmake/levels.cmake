@@ -54,7 +54,7 @@ function(steradian_add_levels)
     set_target_properties(${name} PROPERTIES STERADIAN_LEVEL ${level} OUTPUT_NAME steradian EXPORT_NAME steradian C_VISIBILITY_PRESET hidden
       LIBRARY_OUTPUT_DIRECTORY ${folder}${below} INSTALL_RPATH "$ORIGIN;$ORIGIN/../.."
       VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
-    target_include_directories(${name} PRIVATE include src ${EMBREE_INCLUDE_DIR} INTERFACE $<INSTALL_INTERFACE:include>)
+    target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include> PRIVATE src ${EMBREE_INCLUDE_DIR})
     target_include_directories(${name} SYSTEM PRIVATE ${NANOVDB_INCLUDE_DIR})
     target_compile_definitions(${name} PRIVATE SR_VERSION="${PROJECT_VERSION}")
     target_link_libraries(${name} PRIVATE $<BUILD_INTERFACE:steradian_flags> steradian_tables Threads::Threads PNG::PNG JPEG::JPEG ZLIB::ZLIB EXPAT::EXPAT

@@ -34,6 +34,10 @@ if [ "$shared" = ON ]; then
     [ -z "${seen:-}" ] || { echo "failed: the shared library shows $seen" >&2; exit 1; }
 fi
 export LD_LIBRARY_PATH="$libdir"
+if [ "$shared" = OFF ] && command -v objdump >/dev/null && objdump -h "$libdir/libsteradian.a" | grep -q '\.gnu\.lto_'; then
+    echo "failed: whoever links the library optimises all of it again" >&2
+    exit 1
+fi
 
 cp "$consumer/consumer.c" "$folder/consumer.cpp"
 echo "== pkg-config, C"

@@ -34,6 +34,7 @@ OWNERS = {"embree3/": "src/scene/", "openexr": "src/image/", "png.h": "src/image
           "zlib.h": ("src/base/", "src/store/"), "jansson.h": ("tools/", "src/import/gltf/"), "nanovdb/": "src/medium/", "cairo": "src/plot/", "cminpack": "src/lab/", "expat.h": "src/measured/"}
 WORDS = re.compile(r"\b(TODO|FIXME|XXX|HACK)\b")
 MALLOC = re.compile(r"(?<![\w_])(malloc|calloc|realloc|free|aligned_alloc|posix_memalign)\s*\(")
+OPTION = re.compile(r'(?:option\(|set\((?=\w+ [^\n]* CACHE ))(STERADIAN_\w+)')
 PRINT_EXIT = re.compile(r"(?<![\w_])(printf|fprintf|puts|perror|exit|abort|_exit)\s*\(")
 INCLUDE = re.compile(r'\s*#\s*include\s+["<]([^">]+)[">]')
 FLOAT_MEMBER = re.compile(r"^\s*(?:const\s+)?(?:float|double)\s+(?!.*\()[^;]*;")
@@ -117,6 +118,12 @@ def check(root):
                     offences.append(f"{rel}:{number}: memory is asked for in src/base/memory.c only")
                 if PRINT_EXIT.search(line) and not rel.startswith("src/spectrum/fit/"):
                     offences.append(f"{rel}:{number}: the library neither prints nor exits")
+        if path.name == "CMakeLists.txt":
+            told = root / "CONTRIBUTING.md"
+            told = told.read_text(encoding="utf-8") if told.is_file() else ""
+            for option in OPTION.findall(text):
+                if f"`{option}`" not in told:
+                    offences.append(f"{rel}: CONTRIBUTING.md does not tell what {option} is")
         is_door = re.fullmatch(r"src/(\w+)/\1\.h", rel) is not None
         if rel.startswith("include/") and path.suffix == ".h":
             for number, line in enumerate(text.splitlines(), 1):
@@ -144,6 +151,7 @@ def self_test(root):
         "src/bsdf/i.c": "/* SPDX-License-Identifier: MIT */\nint x;",
         "src/bsdf/k.c": "/* SPDX-License-Identifier: MIT */\n" + 600 * "int f(void);\n",
         "include/steradian/j.h": "/* SPDX-License-Identifier: MIT */\nstruct s {\n    float bare;\n};\n",
+        "bench/CMakeLists.txt": '# SPDX-License-Identifier: MIT\nset(STERADIAN_UNTOLD "" CACHE STRING "what nobody is told")\n',
     }
     for name, text in planted.items():
         with tempfile.TemporaryDirectory() as folder:
