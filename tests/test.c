@@ -80,8 +80,8 @@ void test_equal_text(const char *file, int line, const char *what, const char *v
 void test_mean(const char *file, int line, const char *what, const struct sr_tally *tally, double expected)
 {
     double se = sr_tally_standard_error(tally);
-    double rounding =
-        4 * (double)SR_MACHINE_EPSILON * fabs(expected); // floats are added: a constant is never off by less
+    // floats are added: a constant is never off by less
+    double rounding = 4 * (double)SR_MACHINE_EPSILON * fabs(expected);
     if (tally->n < 100 || !(fabs(tally->mean - expected) <= 4.9 * se + rounding))
         test_fail(file, line, "%s: mean %.9g +- %.3g (n = %llu), expected %.9g, z = %.2f", what, tally->mean, se,
                   (unsigned long long)tally->n, expected, (tally->mean - expected) / se);

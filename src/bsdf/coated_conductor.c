@@ -85,7 +85,8 @@ __attribute__((noinline)) static float density(const struct layers *l, sr_vec3 w
     return (1 - anywhere) * (top + (1 - Fo) * base) + anywhere * wi.z * SR_INV_PI;
 }
 
-static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *p)
+__attribute__((noinline)) static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode,
+                                                   float *p)
 {
     (void)mode;
     *p = 0;

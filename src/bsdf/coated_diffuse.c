@@ -183,7 +183,8 @@ static sr_spectrum rough_f(const struct layers *l, sr_vec3 wo, sr_vec3 wi)
     return coat + sum * (SR_INV_PI / ((float)count * l->top.eta * l->top.eta));
 }
 
-static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *p)
+__attribute__((noinline)) static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode,
+                                                   float *p)
 {
     const struct sr_bsdf_coated *c = self;
     (void)mode;

@@ -30,7 +30,8 @@ static uint32_t lobes(const void *self)
     return BOTH | (ggx_is_smooth(m->ggx) ? SR_LOBE_SPECULAR : SR_LOBE_GLOSSY);
 }
 
-static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *p)
+__attribute__((noinline)) static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode,
+                                                   float *p)
 {
     const struct sr_bsdf_dielectric *m = self;
     struct interface a = interface_of(m->eta, m->ggx);

@@ -71,7 +71,8 @@ static struct choice choices(const struct disney *m, float co)
     return (struct choice){c.diffuse / sum, c.specular / sum, c.clearcoat / sum};
 }
 
-static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *p)
+__attribute__((noinline)) static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode,
+                                                   float *p)
 {
     const struct disney *m = self;
     (void)mode;

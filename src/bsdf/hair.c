@@ -167,7 +167,8 @@ static struct view view_of(const struct sr_bsdf_hair *m, sr_vec3 wo)
     return w;
 }
 
-static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *pdf)
+__attribute__((noinline)) static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode,
+                                                   float *pdf)
 {
     const struct sr_bsdf_hair *m = self;
     (void)mode;

@@ -220,8 +220,8 @@ static inline sr_spectrum layered_f(const struct layers *l, bool metal, sr_vec3 
         if (!draw_top(l, wi, SR_LOBE_TRANSMISSION, &rng, &leave)) {
             if (!rough_top || c->weighs_as_pbrt)
                 continue;
-            leave =
-                (struct interface_sample){.wi = {0, 0, -1}, .pdf = 1}; // of no weight: the other way still leads out
+            // of no weight: the other way still leads out
+            leave = (struct interface_sample){.wi = {0, 0, -1}, .pdf = 1};
         }
         sr_vec3 up = sr_neg(leave.wi);
         float leave_f = leave.weight / up.z; // f / pdf of the way out

@@ -26,51 +26,22 @@ struct recipe {
 };
 
 /* The rows of a recipe that is the member `recipe` of a model's struct. Default: seven quarter waves at 550 nm. */
-#define RECIPE_ROWS(type)                                                                                              \
-    {SR_PARAM_INT,                                                                                                     \
-     "layer_count",                                                                                                    \
-     "1",                                                                                                              \
-     0,                                                                                                                \
-     FILM_LAYERS,                                                                                                      \
-     7,                                                                                                                \
-     offsetof(type, recipe.layer_count),                                                                               \
-     "layers from the outside in: high, low, high, …"},                                                                \
-        {SR_PARAM_UNBOUNDED,                                                                                           \
-         "high_eta",                                                                                                   \
-         "1",                                                                                                          \
-         1,                                                                                                            \
-         4,                                                                                                            \
-         2.35,                                                                                                         \
-         offsetof(type, recipe.high_eta),                                                                              \
-         "index of refraction of the first, third, … layer"},                                                          \
-        {SR_PARAM_FLOAT,                                                                                               \
-         "high_thickness",                                                                                             \
-         "nm",                                                                                                         \
-         0,                                                                                                            \
-         500,                                                                                                          \
-         58.5106383,                                                                                                   \
-         offsetof(type, recipe.high_thickness),                                                                        \
-         "of the first, third, … layer"},                                                                              \
-        {SR_PARAM_UNBOUNDED,                                                                                           \
-         "low_eta",                                                                                                    \
-         "1",                                                                                                          \
-         1,                                                                                                            \
-         4,                                                                                                            \
-         1.38,                                                                                                         \
-         offsetof(type, recipe.low_eta),                                                                               \
-         "index of refraction of the second, fourth, … layer"},                                                        \
-        {SR_PARAM_FLOAT,                                                                                               \
-         "low_thickness",                                                                                              \
-         "nm",                                                                                                         \
-         0,                                                                                                            \
-         500,                                                                                                          \
-         99.6376812,                                                                                                   \
-         offsetof(type, recipe.low_thickness),                                                                         \
-         "of the second, fourth, … layer"},                                                                            \
-    {                                                                                                                  \
-        SR_PARAM_FILE, "layers", "1", 0, 1, 0, offsetof(type, recipe.file),                                            \
-            "instead of these: lines \"n k thickness_nm\" from the outside in"                                         \
-    }
+// rows of a table: one line each, or two
+// clang-format off
+#define RECIPE_ROWS(type) \
+    {SR_PARAM_INT, "layer_count", "1", 0, FILM_LAYERS, 7, offsetof(type, recipe.layer_count), \
+     "layers from the outside in: high, low, high, …"}, \
+    {SR_PARAM_UNBOUNDED, "high_eta", "1", 1, 4, 2.35, offsetof(type, recipe.high_eta), \
+     "index of refraction of the first, third, … layer"}, \
+    {SR_PARAM_FLOAT, "high_thickness", "nm", 0, 500, 58.5106383, offsetof(type, recipe.high_thickness), \
+     "of the first, third, … layer"}, \
+    {SR_PARAM_UNBOUNDED, "low_eta", "1", 1, 4, 1.38, offsetof(type, recipe.low_eta), \
+     "index of refraction of the second, fourth, … layer"}, \
+    {SR_PARAM_FLOAT, "low_thickness", "nm", 0, 500, 99.6376812, offsetof(type, recipe.low_thickness), \
+     "of the second, fourth, … layer"}, \
+    {SR_PARAM_FILE, "layers", "1", 0, 1, 0, offsetof(type, recipe.file), \
+     "instead of these: lines \"n k thickness_nm\" from the outside in"}
+// clang-format on
 
 static inline bool is_blank(char c)
 {

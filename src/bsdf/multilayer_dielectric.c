@@ -51,7 +51,8 @@ static uint32_t lobes(const void *self)
     return film_glass_lobes(m->eta, m->ggx);
 }
 
-static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *p)
+__attribute__((noinline)) static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode,
+                                                   float *p)
 {
     const struct multilayer *m = self;
     struct film_stack stack = stack_of(m);

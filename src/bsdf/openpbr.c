@@ -384,7 +384,8 @@ static sr_spectrum transmission(const struct openpbr *m, const struct choice *ch
     return through_layers(m, above) * value;
 }
 
-static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *p)
+__attribute__((noinline)) static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode,
+                                                   float *p)
 {
     const struct openpbr *m = self;
     *p = 0;

@@ -69,8 +69,9 @@ static struct across across_of(const struct poulin_fournier *m, sr_vec3 w)
     struct across v = {.r = sqrtf(w.y * w.y + w.z * w.z), .a = atan2f(w.z, w.y)};
     float sine = w.z / v.r, cosine = fabsf(w.y) / v.r, d = m->distance; // as if toward +y
     float lean = w.y < 0 ? SR_PI - v.a : v.a;
-    float g0 = sr_max(m->least, lean + asinf(sr_clamp(1 - d * sine, -1, 1))),
-          g1 = sr_min(SR_PI - m->least, lean + SR_PI / 2);
+    // asin(max(-1, 1 - d sine)), exact at grazing too
+    float blocked = SR_PI / 2 - 2 * asinf(sqrtf(sr_min(0.5f * d * sine, 1)));
+    float g0 = sr_max(m->least, lean + blocked), g1 = sr_min(SR_PI - m->least, lean + SR_PI / 2);
     float y0 = m->half_width, y1 = d - m->half_width;
     if (cosine > m->height) // less steep than where the next cylinder leaves the ground
         y1 = sr_min(y1, d + (m->height * cosine - 1) / sine);
@@ -121,6 +122,15 @@ static float seen_width(const struct across *v)
     return v->g1 > v->g0 ? sinf(v->g1 - v->a) - sinf(v->g0 - v->a) : 0;
 }
 
+/* INTEGRAL cos(g - a_i) cos(g - a_o) dg = (w cos(a_o - a_i) + sin w cos(2 m - a_o - a_i)) / 2, about m, w wide; at
+ * grazing these two are almost opposite, so = w cos(m - a_o) cos(m - a_i) - (w - sin w) cos(2 m - a_o - a_i) / 2 */
+static float seen_and_lit(const struct across *o, const struct across *i, float g0, float g1)
+{
+    float w = g1 - g0, m = 0.5f * (g0 + g1), x = m - o->a, y = m - i->a, w2 = w * w;
+    float rest = w < 0.5f ? w * w2 / 6 * (1 - w2 / 20 * (1 - w2 / 42)) : w - sinf(w);
+    return w * cosf(x) * cosf(y) - 0.5f * rest * cosf(x + y);
+}
+
 static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *pdf)
 {
     const struct poulin_fournier *m = self;
@@ -136,8 +146,7 @@ static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_trans
 
     float matte = ground, gloss = shines ? ground * floor_power : 0;
     if (g1 > g0) {
-        float width = g1 - g0, middle = 0.5f * (g0 + g1);
-        matte += sr_max(0, 0.5f * rr * (width * cosf(o.a - i.a) + sinf(width) * cosf(2 * middle - o.a - i.a)));
+        matte += sr_max(0, rr * seen_and_lit(&o, &i, g0, g1));
         if (shines)
             gloss += rr * highlight(m, &o, &i, xx, g0, g1, true);
     }

@@ -86,7 +86,8 @@ static sr_spectrum facet(const struct principled *m, float cd, bool below, float
     return R;
 }
 
-static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode, float *p)
+__attribute__((noinline)) static sr_spectrum f_pdf(const void *self, sr_vec3 wo, sr_vec3 wi, enum sr_transport mode,
+                                                   float *p)
 {
     const struct principled *m = self;
     *p = 0;

@@ -18,30 +18,19 @@ struct ward {
     float share; // [1] how often the lobe is drawn
 };
 
-#define WARD_PARAMS                                                                                                      \
-    {                                                                                                                    \
-        {SR_PARAM_ALBEDO,                                                                                                \
-         "reflectance",                                                                                                  \
-         "1",                                                                                                            \
-         0,                                                                                                              \
-         1,                                                                                                              \
-         0.2,                                                                                                            \
-         offsetof(struct ward, reflectance),                                                                             \
-         "share of the light that the matte part reflects"},                                                             \
-            {SR_PARAM_ALBEDO, "specular", "1", 0, 1, 0.3, offsetof(struct ward, specular), "strength of the lobe"},      \
-            {SR_PARAM_FLOAT,                                                                                             \
-             "alpha_x",                                                                                                  \
-             "1",                                                                                                        \
-             0.001,                                                                                                      \
-             0.5,                                                                                                        \
-             0.15,                                                                                                       \
-             offsetof(struct ward, alpha_x),                                                                             \
-             "slope width along the tangent: sqrt(2) times the root mean square slope"},                                 \
-            {SR_PARAM_FLOAT, "alpha_y", "1", 0.001, 0.5, 0.15, offsetof(struct ward, alpha_y), "slope width across it"}, \
-        {                                                                                                                \
-            0                                                                                                            \
-        }                                                                                                                \
+// rows of a table: one line each, or two
+// clang-format off
+#define WARD_PARAMS \
+    { \
+        {SR_PARAM_ALBEDO, "reflectance", "1", 0, 1, 0.2, offsetof(struct ward, reflectance), \
+         "share of the light that the matte part reflects"}, \
+        {SR_PARAM_ALBEDO, "specular", "1", 0, 1, 0.3, offsetof(struct ward, specular), "strength of the lobe"}, \
+        {SR_PARAM_FLOAT, "alpha_x", "1", 0.001, 0.5, 0.15, offsetof(struct ward, alpha_x), \
+         "slope width along the tangent: sqrt(2) times the root mean square slope"}, \
+        {SR_PARAM_FLOAT, "alpha_y", "1", 0.001, 0.5, 0.15, offsetof(struct ward, alpha_y), "slope width across it"}, \
+        {0} \
     }
+// clang-format on
 
 __attribute__((unused)) static void ward_ready(void *self, const struct sr_bsdf_at *at)
 {

@@ -90,8 +90,8 @@ static void read_all(struct job *job)
                                       SR_IMAGE_BYTES, &job->image, job->error);
     if (job->status != SR_OK)
         return;
-    jpeg->mem->max_memory_to_use =
-        (long)(((size_t)64 << 20) + 64 * job->source->size); // coefficients of progressive files
+    // coefficients of progressive files
+    jpeg->mem->max_memory_to_use = (long)(((size_t)64 << 20) + 64 * job->source->size);
     jpeg_start_decompress(jpeg);
     while (jpeg->output_scanline < jpeg->output_height) {
         JSAMPROW row = sr_image_row(job->source, job->image, jpeg->output_scanline);

@@ -176,8 +176,8 @@ static double density_of_cell(const struct portal *m, uint32_t i, uint32_t j, in
         sr_vec2 ab = {((float)i + ((float)(k % looks) + 0.5f) / (float)looks) / (float)m->n,
                       ((float)j + ((float)(k / looks) + 0.5f) / (float)looks) / (float)m->n};
         float solid_angle;
-        double grey =
-            (double)sr_infinite_blurred_grey(&m->sky, direction_of(m, ab, &solid_angle)); // reaches beyond small suns
+        // reaches beyond small suns
+        double grey = (double)sr_infinite_blurred_grey(&m->sky, direction_of(m, ab, &solid_angle));
         sum += (double)solid_angle * (grey + floor);
     }
     return sum / (looks * looks);

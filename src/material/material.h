@@ -40,8 +40,8 @@ struct sr_material_model {
     const struct sr_material *(*choose)(const void *self, struct sr_material_context *c);
     /* Light that the BSDF lets in comes out elsewhere, by this. false: not here. NULL: never. */
     bool (*bssrdf)(const void *self, const struct sr_material_context *c, struct sr_bssrdf *out);
-    const char *(*remark)(
-        const void *self); // once prepared: one sentence on what is given in vain; NULL, or returns NULL
+    // once prepared: one sentence on what is given in vain; NULL, or returns NULL
+    const char *(*remark)(const void *self);
 };
 const struct sr_material_model *sr_material_model(int i); // all that scenes may name, the i-th; NULL past the end
 const struct sr_material_model *sr_material_model_find(const char *name);

@@ -44,8 +44,8 @@ static float density_at_height(const struct cloud *m, float y, float noise)
 static float largest_density(const void *context, const double lo[3], const double hi[3])
 {
     const struct cloud *m = context;
-    float most_noise =
-        1.05f * 0.96875f; // it falls with the height, where noise is above 0; above the height 1 noise below 0 counts
+    // it falls with the height, where noise is above 0; above the height 1 noise below 0 counts
+    float most_noise = 1.05f * 0.96875f;
     float bottom = sr_min(m->p0.y, m->p1.y), extent = fabsf(m->p1.y - m->p0.y);
     float y0 = bottom + (float)lo[1] * extent, y1 = bottom + (float)hi[1] * extent;
     return sr_max(density_at_height(m, y0, most_noise), density_at_height(m, y1, -most_noise));

@@ -25,51 +25,23 @@ struct meter_surface_params {
     sr_vec3 p, n, u, v; // [m] corner or centre, [1] normal, [m] edges
     float radius;       // [m]
 };
-#define METER_SURFACE_ROWS(type, member)                                                                               \
-    {SR_PARAM_ENUM,                                                                                                    \
-     "shape",                                                                                                          \
-     "1",                                                                                                              \
-     0,                                                                                                                \
-     0,                                                                                                                \
-     METER_RECTANGLE,                                                                                                  \
-     offsetof(type, member) + offsetof(struct meter_surface_params, shape),                                            \
-     "rectangle|disk|sphere"},                                                                                         \
-        {SR_PARAM_POINT3,                                                                                              \
-         "p",                                                                                                          \
-         "m",                                                                                                          \
-         0,                                                                                                            \
-         0,                                                                                                            \
-         0,                                                                                                            \
-         offsetof(type, member) + offsetof(struct meter_surface_params, p),                                            \
-         "corner of the rectangle, centre of disk or sphere"},                                                         \
-        {SR_PARAM_NORMAL3,                                                                                             \
-         "n",                                                                                                          \
-         "1",                                                                                                          \
-         0,                                                                                                            \
-         0,                                                                                                            \
-         NAN,                                                                                                          \
-         offsetof(type, member) + offsetof(struct meter_surface_params, n),                                            \
-         "the disk's normal; none: +z"},                                                                               \
-        {SR_PARAM_VECTOR3,                                                                                             \
-         "u",                                                                                                          \
-         "m",                                                                                                          \
-         0,                                                                                                            \
-         0,                                                                                                            \
-         NAN,                                                                                                          \
-         offsetof(type, member) + offsetof(struct meter_surface_params, u),                                            \
-         "an edge of the rectangle"},                                                                                  \
-        {SR_PARAM_VECTOR3,                                                                                             \
-         "v",                                                                                                          \
-         "m",                                                                                                          \
-         0,                                                                                                            \
-         0,                                                                                                            \
-         NAN,                                                                                                          \
-         offsetof(type, member) + offsetof(struct meter_surface_params, v),                                            \
-         "the other; the front is u x v"},                                                                             \
-    {                                                                                                                  \
-        SR_PARAM_FLOAT, "radius", "m", 0, INFINITY, 1,                                                                 \
-            offsetof(type, member) + offsetof(struct meter_surface_params, radius), "of disk and sphere"               \
-    }
+// rows of a table: one line each, or two
+// clang-format off
+#define METER_SURFACE_ROWS(type, member) \
+    {SR_PARAM_ENUM, "shape", "1", 0, 0, METER_RECTANGLE, \
+     offsetof(type, member) + offsetof(struct meter_surface_params, shape), "rectangle|disk|sphere"}, \
+    {SR_PARAM_POINT3, "p", "m", 0, 0, 0, \
+     offsetof(type, member) + offsetof(struct meter_surface_params, p), \
+     "corner of the rectangle, centre of disk or sphere"}, \
+    {SR_PARAM_NORMAL3, "n", "1", 0, 0, NAN, \
+     offsetof(type, member) + offsetof(struct meter_surface_params, n), "the disk's normal; none: +z"}, \
+    {SR_PARAM_VECTOR3, "u", "m", 0, 0, NAN, \
+     offsetof(type, member) + offsetof(struct meter_surface_params, u), "an edge of the rectangle"}, \
+    {SR_PARAM_VECTOR3, "v", "m", 0, 0, NAN, \
+     offsetof(type, member) + offsetof(struct meter_surface_params, v), "the other; the front is u x v"}, \
+    {SR_PARAM_FLOAT, "radius", "m", 0, INFINITY, 1, \
+     offsetof(type, member) + offsetof(struct meter_surface_params, radius), "of disk and sphere"}
+// clang-format on
 
 struct meter_surface_self {
     sr_vec3 p, u, v, n; // [m] [m] [m] [1]

@@ -115,8 +115,8 @@ static sr_status create(const struct sr_film *film, const char **names, const ch
     for (uint32_t i = 0; i < film->settings.buckets; ++i) {
         name_bucket(&film->settings, i, bucket_names[i]);
         names[count] = bucket_names[i];
-        units[count++] =
-            film->settings.bucket_scale < 1 ? "W/(m^2 sr nm)" : "1"; // of photometric scenes: as pbrt counts
+        // of photometric scenes: as pbrt counts
+        units[count++] = film->settings.bucket_scale < 1 ? "W/(m^2 sr nm)" : "1";
     }
     if (sr_image_create(film->width, film->height, count, names, SR_IMAGE_FLOATS, image, error) != SR_OK)
         return error->status;

@@ -173,8 +173,8 @@ sr_status sr_gonio_scatter(const struct sr_gonio *g, const struct sr_gonio_beam 
     for (size_t c = 0; c < out->cells; ++c) {
         double lower = sin(pi / 2 * (double)(c / b->phi_count) / b->theta_count),
                upper = sin(pi / 2 * (double)(c / b->phi_count + 1) / b->theta_count);
-        double projected =
-            2 * pi / b->phi_count * (upper * upper - lower * lower) / 2; // folded cells are two of half the width
+        // folded cells are two of half the width
+        double projected = 2 * pi / b->phi_count * (upper * upper - lower * lower) / 2;
         for (int i = 0; i < SR_LAMBDA_COUNT; ++i) {
             mean[c * SR_LAMBDA_COUNT + (size_t)i] /= projected;
             u[c * SR_LAMBDA_COUNT + (size_t)i] /= projected;

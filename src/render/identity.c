@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
+/* What levels do not tell of processors between two of them. */
 #if defined(__AVX512F__)
 static const char instructions[] = "avx512";
 #elif defined(__AVX2__) && defined(__FMA__)
@@ -86,7 +87,7 @@ char *sr_render_identity(struct sr_arena *arena, const struct sr_render_job *job
     add_line(&t, "format 1");
     add_line(&t, "version %s", SR_VERSION);
     add_line(&t, "compiler %s", __VERSION__);
-    add_line(&t, "instructions %s", instructions);
+    add_line(&t, "instruction_set %s (%s)", sr_isa(), instructions);
     for (const char *p = scene; p && *p; p += strcspn(p, "\n"), p += *p == '\n')
         add_line(&t, "scene.%.*s", (int)strcspn(p, "\n"), p);
     add_line(&t, "seed %u", job->seed);

@@ -17,37 +17,24 @@ struct projection {
     float y0, y_step;                  // [1] the same; rasters count downward, so y_step < 0
 };
 
-#define SENSOR_SHUTTER_ROWS(type)                                                                                      \
-    {SR_PARAM_FLOAT,   "shutteropen", "s", -INFINITY, INFINITY, 0, offsetof(type, common.shutter_open),                \
-     "exposure begins"},                                                                                               \
-    {                                                                                                                  \
-        SR_PARAM_FLOAT, "shutterclose", "s", -INFINITY, INFINITY, 1, offsetof(type, common.shutter_close),             \
-            "exposure ends"                                                                                            \
-    }
-#define SENSOR_PROJECTION_ROWS(type)                                                                                   \
-    SENSOR_SHUTTER_ROWS(type),                                                                                         \
-        {SR_PARAM_FLOAT,          "lensradius", "m", 0, INFINITY, 0, offsetof(type, projection.lens_radius),           \
-         "0: everything is sharp"},                                                                                    \
-        {SR_PARAM_FLOAT,                                                                                               \
-         "focaldistance",                                                                                              \
-         "m",                                                                                                          \
-         0,                                                                                                            \
-         INFINITY,                                                                                                     \
-         1e6,                                                                                                          \
-         offsetof(type, projection.focal_distance),                                                                    \
-         "to the plane that is sharp"},                                                                                \
-        {SR_PARAM_FLOAT,                                                                                               \
-         "frameaspectratio",                                                                                           \
-         "1",                                                                                                          \
-         0,                                                                                                            \
-         INFINITY,                                                                                                     \
-         NAN,                                                                                                          \
-         offsetof(type, projection.frame_aspect_ratio),                                                                \
-         "width / height; the image's"},                                                                               \
-    {                                                                                                                  \
-        SR_PARAM_FLOATS, "screenwindow", "1", -INFINITY, INFINITY, NAN, offsetof(type, projection.screen_window),      \
-            "x0 x1 y0 y1 of the image's borders"                                                                       \
-    }
+// rows of a table: one line each, or two
+// clang-format off
+#define SENSOR_SHUTTER_ROWS(type) \
+    {SR_PARAM_FLOAT, "shutteropen", "s", -INFINITY, INFINITY, 0, offsetof(type, common.shutter_open), \
+     "exposure begins"}, \
+    {SR_PARAM_FLOAT, "shutterclose", "s", -INFINITY, INFINITY, 1, offsetof(type, common.shutter_close), \
+     "exposure ends"}
+#define SENSOR_PROJECTION_ROWS(type) \
+    SENSOR_SHUTTER_ROWS(type), \
+    {SR_PARAM_FLOAT, "lensradius", "m", 0, INFINITY, 0, offsetof(type, projection.lens_radius), \
+     "0: everything is sharp"}, \
+    {SR_PARAM_FLOAT, "focaldistance", "m", 0, INFINITY, 1e6, offsetof(type, projection.focal_distance), \
+     "to the plane that is sharp"}, \
+    {SR_PARAM_FLOAT, "frameaspectratio", "1", 0, INFINITY, NAN, offsetof(type, projection.frame_aspect_ratio), \
+     "width / height; the image's"}, \
+    {SR_PARAM_FLOATS, "screenwindow", "1", -INFINITY, INFINITY, NAN, offsetof(type, projection.screen_window), \
+     "x0 x1 y0 y1 of the image's borders"}
+// clang-format on
 
 /* The camera's origin [m] and axes (not normalised: the transform may scale) in the world. */
 struct sensor_axes {

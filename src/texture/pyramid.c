@@ -146,8 +146,8 @@ static void fetch_row(const struct source *s, uint32_t x0, uint32_t count, uint3
             out[x] = fetch(s, x0 + x, y);
         return;
     }
-    const unsigned char *b =
-        (const unsigned char *)t->bytes + ((size_t)y * s->width + x0) * s->channels; // as most images are
+    // as most images are
+    const unsigned char *b = (const unsigned char *)t->bytes + ((size_t)y * s->width + x0) * s->channels;
     for (uint32_t x = 0; x < count; ++x, b += s->channels)
         out[x] = (struct sr_rgb){t->decode[b[0]], t->decode[b[1]], t->decode[b[2]]};
 }

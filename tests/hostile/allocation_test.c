@@ -102,7 +102,9 @@ TEST(each_allocation_of_the_estimators_may_fail)
 {
     static const char *const names[] = {"path", "bdpt", "sppm", "lightpath", "ambientocclusion", "randomwalk"};
     for (size_t i = 0; i < sizeof names / sizeof *names; ++i)
-        try_scene(hostile_estimator(names[i]));
+        try_scene(hostile_estimator(names[i], ""));
+    try_scene(hostile_estimator("guidedpath", "\"string guiding\" \"on\""));
+    try_scene(hostile_estimator("roulettepath", "\"string learned\" \"on\""));
 }
 
 TEST(each_allocation_of_other_formats_may_fail)

@@ -74,12 +74,12 @@ static const char more[] =
     "MakeNamedMedium \"cloud\" \"string type\" \"nanovdb\" \"string filename\" \"volume.nvdb\"\nMediumInterface \"cloud\" \"\"\nMaterial \"interface\" Shape \"sphere\" \"float radius\" 2\n"
     "MediumInterface \"\" \"\"\nMaterial \"subsurface\" \"string name\" \"Skin1\" Shape \"sphere\" \"float radius\" .3\nMaterial \"hair\" Shape \"curve\" \"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 1]\n";
 
-static void put_scene(const char *name, const char *estimator)
+static void put_scene(const char *name, const char *estimator, const char *parameters)
 {
     static char text[SEED_SIZE];
     const char *integrator = strstr(seed_scene_head, "\"volpath\"");
-    int n = estimator ? snprintf(text, sizeof text, "%.*s\"%s\" # %s", (int)(integrator - seed_scene_head),
-                                 seed_scene_head, estimator, integrator)
+    int n = estimator ? snprintf(text, sizeof text, "%.*s\"%s\" %s # %s", (int)(integrator - seed_scene_head),
+                                 seed_scene_head, estimator, parameters, integrator)
                       : snprintf(text, sizeof text, "%s", seed_scene_head);
     const char *fog = strstr(seed_scene_body, "MediumInterface"),
                *behind = strchr(fog, '\n'); // through which only volpath goes
@@ -137,7 +137,7 @@ static void put_everything(void)
         "lens.pbrt",
         "Camera \"realistic\" \"string lensfile\" \"lens.dat\" \"float aperturediameter\" 3 \"string aperture\" \"image.png\"\n"
         "WorldBegin\nLightSource \"infinite\"\nShape \"sphere\" \"float radius\" .1\n");
-    put_scene("scene.pbrt", NULL);
+    put_scene("scene.pbrt", NULL, "");
 }
 
 const char *hostile_scene(const char *name)
@@ -149,11 +149,11 @@ const char *hostile_scene(const char *name)
     return path_of(name);
 }
 
-const char *hostile_estimator(const char *name)
+const char *hostile_estimator(const char *name, const char *parameters)
 {
     char file[64];
     snprintf(file, sizeof file, "%s.pbrt", name);
-    put_scene(file, name);
+    put_scene(file, name, parameters);
     return path_of(file);
 }
 

@@ -9,7 +9,7 @@
  * buffer. */
 const char *hostile_scene(const char *name);
 /* scene.pbrt with another estimator. */
-const char *hostile_estimator(const char *name);
+const char *hostile_estimator(const char *name, const char *parameters);
 /* From a name to a picture in a file. */
 sr_status hostile_render(const char *path, const char *out, struct sr_error *error);
 

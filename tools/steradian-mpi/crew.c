@@ -42,7 +42,8 @@ static uint64_t hash_file(const char *path, uint64_t hash)
     return hash;
 }
 
-/* The bytes of the program, and of the library where that renders; and what the render says of itself. */
+/* What the render says of itself, and then, as it tells a user less, the bytes of the program, and of the library where
+ * that renders. */
 static char *identity_of_all(void)
 {
     uint64_t hash = hash_file("/proc/self/exe", 0xcbf29ce484222325);
@@ -53,7 +54,7 @@ static char *identity_of_all(void)
     size_t size = strlen(render_crew.identity) + 64;
     char *text = sr_alloc(size);
     if (text)
-        snprintf(text, size, "program %016llx\n%s", (unsigned long long)hash, render_crew.identity);
+        snprintf(text, size, "%sprogram %016llx\n", render_crew.identity, (unsigned long long)hash);
     return text;
 }
 

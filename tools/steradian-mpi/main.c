@@ -196,7 +196,7 @@ int main(int argc, char **argv)
     int code = 0;
     if (strcmp(name, "--version") == 0 || strcmp(name, "-V") == 0) {
         if (rank == 0)
-            printf("steradian-mpi %s\n", SR_VERSION);
+            printf("steradian-mpi %s (%s), %d wavelengths a path\n", SR_VERSION, sr_isa(), SR_LAMBDA_COUNT);
     } else if (o.is_helpful || argc < 2) {
         if (rank == 0)
             fputs(help, argc > 1 ? stdout : stderr);

@@ -144,7 +144,7 @@ static void markdown_head(FILE *out, const struct sr_certificate_options *o)
         "\n"
         "A model that breaks a law by its nature is *documented*: its table tells the most that it may deviate, and "
         "the\n"
-        "measured amount is within it.\n",
+        "measured amount is within it, or beyond it by no more than chance: +- is a standard error.\n",
         (unsigned)o->sets, (unsigned)o->samples, (unsigned)o->seed, o->significance, (unsigned)o->sets,
         (unsigned)o->samples);
 }

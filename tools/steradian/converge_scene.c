@@ -154,8 +154,8 @@ static sr_status run_series(const struct converge_arguments *a, struct sr_render
             if (read_meter(&job, meter, n, (uint32_t)a->seeds, arena, &m, error) != SR_OK)
                 return error->status;
             double u = m.value[SR_PHOTOPIC].u, S = (double)a->seeds, d = m.value[SR_PHOTOPIC].value - r->mean;
-            error2 =
-                ((S - 1) * u * u + d * d - r->variance) / (r->mean * r->mean); // u^2 = 1/(S (S - 1)) SUM (X_s - mean)^2
+            // u^2 = 1/(S (S - 1)) SUM (X_s - mean)^2
+            error2 = ((S - 1) * u * u + d * d - r->variance) / (r->mean * r->mean);
             time_s = (double)(clock() - start) / CLOCKS_PER_SEC / S;
         } else {
             job.spp = (uint32_t)n;

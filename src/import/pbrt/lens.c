@@ -128,8 +128,8 @@ static sr_status read_aperture(struct sr_pbrt_build *b, const char *name, struct
         for (uint32_t y = 0; values && y < image->height; ++y)
             for (uint32_t x = 0; x < image->width; ++x) {
                 const float *p = image->floats + sr_image_index(image, x, y);
-                values[(size_t)(image->height - 1 - y) * image->width + x] =
-                    (p[rgb[0]] + p[rgb[1]] + p[rgb[2]]) / 3; // rows from below
+                // rows from below
+                values[(size_t)(image->height - 1 - y) * image->width + x] = (p[rgb[0]] + p[rgb[1]] + p[rgb[2]]) / 3;
             }
         sr_image_free(image);
         if (!values)

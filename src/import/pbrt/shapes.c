@@ -212,8 +212,8 @@ static sr_status displace(struct sr_pbrt_build *b, const struct sr_pbrt_shape *s
     if (status != SR_OK || !sr_pbrt_find(&s->entity.params, "displacement"))
         return status;
     struct sr_error inner = {0};
-    struct sr_transform to_world =
-        sr_pbrt_transform_of(b, s->entity.transform, SR_PBRT_TO_WORLD); // as textures take it
+    // as textures take it
+    struct sr_transform to_world = sr_pbrt_transform_of(b, s->entity.transform, SR_PBRT_TO_WORLD);
     return sr_pbrt_displace(ply, &to_world, d.edge_length * b->edge_scale, d.displacement, &inner) == SR_OK
                ? SR_OK
                : sr_pbrt_wrap(b, &s->entity, &inner);

@@ -10,8 +10,8 @@ TEST(all_that_comes_to_the_exit_leaves)
         sr_bsdf_exit_make(&b, etas[i]);
         double x[64], w[64], importance = 0, radiance = 0;
         sr_vec3 wo = direction(0, 0);
-        double end =
-            etas[i] < 1 ? asin((double)etas[i]) : QUADRATURE_PI / 2; // a root's end there: theta = end (1 - t^2)
+        // a root's end there: theta = end (1 - t^2)
+        double end = etas[i] < 1 ? asin((double)etas[i]) : QUADRATURE_PI / 2;
         sr_gauss_legendre(64, 0, 1, x, w);
         for (int k = 0; k < 64; ++k) {
             w[k] *= 2 * end * x[k];

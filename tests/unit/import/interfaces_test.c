@@ -65,8 +65,8 @@ TEST(media_are_where_interfaces_say)
                      "2") "AttributeEnd\n"
                           "AttributeBegin MediumInterface \"\" \"thick\" " BALL(
                               "1") "AttributeEnd\n"
-                                   "Material \"diffuse\" MediumInterface \"thin\" \"thin\" " BALL(
-                                       "0.25")); // same on both sides: nothing is said
+                                   // same on both sides: nothing is said
+                                   "Material \"diffuse\" MediumInterface \"thin\" \"thin\" " BALL("0.25"));
     EXPECT(sr_scene_has_media(result.scene) && sr_scene_has_interfaces(result.scene));
     EXPECT(sr_scene_sensor_medium(result.scene) != NULL);
     EXPECT(thickness(0.1f, 0, 0.5f) == 0);

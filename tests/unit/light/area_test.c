@@ -218,8 +218,8 @@ TEST(density_of_a_picture_is_that_of_its_draws)
         EXPECT(m->shape.model->intersect(m->shape.self, m->primitive, x.p, s.wi, 0, INFINITY, &t, &hit));
         struct sr_point there;
         m->shape.model->point(m->shape.self, m->primitive, hit, &there);
-        bool is_near_edge =
-            fabsf(fmodf(2 * hit.x, 1) - 0.5f) > 0.499f || fabsf(fmodf(2 * hit.y, 1) - 0.5f) > 0.499f; // of a cell
+        // of a cell
+        bool is_near_edge = fabsf(fmodf(2 * hit.x, 1) - 0.5f) > 0.499f || fabsf(fmodf(2 * hit.y, 1) - 0.5f) > 0.499f;
         if (!is_near_edge)
             EXPECT_RELATIVE(sr_light_density(light, &x, s.wi, &there), (double)s.pdf, 1e-3);
         ++n;

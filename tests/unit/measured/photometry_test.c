@@ -57,8 +57,8 @@ TEST(fluxes_are_those_of_the_formulas)
 TEST(flux_is_the_integral_of_the_intensity_between_the_angles)
 {
     struct sr_arena arena = {0};
-    struct sr_photometry p =
-        luminaire_make(&arena, SR_PHOTOMETRY_ALL_PLANES, lopsided, 7, 5); // coarse: the interpolant counts
+    // coarse: the interpolant counts
+    struct sr_photometry p = luminaire_make(&arena, SR_PHOTOMETRY_ALL_PLANES, lopsided, 7, 5);
     enum { N = 40 };
     double x[N], w[N], sum = 0;
     for (int segment = 0; segment < 5; ++segment) {

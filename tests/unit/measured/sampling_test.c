@@ -23,8 +23,8 @@ static void expect_sampler_draws_by_pdf(const struct sr_measured *m, bool is_iso
             double u = (i + (k % SUB + 0.5) / SUB) / nu, half = 0.5 / SUB / nu,
                    phi = phi_o + 2 * PI * (j + (k / SUB + 0.5) / SUB) / nv;
             double theta = u * u * PI / 2, lo = (u - half) * (u - half) * PI / 2, hi = (u + half) * (u + half) * PI / 2;
-            double omega =
-                2 * sin((lo + hi) / 2) * sin((hi - lo) / 2) * 2 * PI / nv / SUB; // exact, as pdf may be large near n
+            // exact, as pdf may be large near n
+            double omega = 2 * sin((lo + hi) / 2) * sin((hi - lo) / 2) * 2 * PI / nv / SUB;
             sr_vec3 h = direction(theta * 180 / PI, phi * 180 / PI);
             float c = sr_dot(up, h);
             sr_vec3 wi = sr_sub(sr_scale(2 * c, h), up);

@@ -278,13 +278,14 @@ static bool same4(sr_u4 a, sr_u4 b)
 
 TEST(numbers_in_pairs_and_drawn_ahead_are_those_of_groups_alone)
 {
-    const uint32_t starts[] = {0, 1, 13, 255, 65520, 65527, 65530, 65536, 1u << 20};
+    const uint32_t starts[] = {0, 1, 13, 255, 65520, 65527, 65528, 65535, 65536, 1u << 20};
     for (int kind = SR_SAMPLER_SOBOL; kind <= SR_SAMPLER_INDEPENDENT; ++kind) {
-        for (size_t j = 0; j < sizeof starts / sizeof *starts; ++j) {
+        for (size_t j = 0; j < SR_AHEAD * (sizeof starts / sizeof *starts); ++j) {
             sr_u8 ahead[SR_AHEAD_GROUPS / 2 * SR_AHEAD];
-            struct sr_sampler start = {.key = sr_hash_u32((uint32_t)j), .sample = starts[j], .kind = (uint32_t)kind};
+            struct sr_sampler start = {
+                .key = sr_hash_u32((uint32_t)j), .sample = starts[j / SR_AHEAD], .kind = (uint32_t)kind};
             uint32_t count = 1 + (uint32_t)j % SR_AHEAD, drawn = sr_sampler_draw_ahead(&start, count, ahead);
-            bool is_ahead = kind == SR_SAMPLER_SOBOL && starts[j] < 65528;
+            bool is_ahead = kind == SR_SAMPLER_SOBOL && start.sample < 65528;
             EXPECT(drawn == (is_ahead ? SR_AHEAD_GROUPS : 0));
             for (uint32_t k = 0; k < count; ++k) {
                 struct sr_sampler alone = start, with = start;
