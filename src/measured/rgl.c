@@ -283,9 +283,10 @@ sr_status read_rgl(const struct tensor_file *t, struct sr_measured *m)
         return SR_ERROR_INPUT;
     r->is_isotropic = r->phis <= 2;
     r->has_jacobian = !jacobian || jacobian->type != TENSOR_U8 || jacobian->count != 1 || jacobian->data[0] != 0;
-    r->reduction = r->is_isotropic ? 1 : (int)rintf(2 * SR_PI / (r->phi[r->phis - 1] - r->phi[0]));
-    if (r->reduction != 1 && r->reduction != 2 && r->reduction != 4)
-        return fail_at(s, 0, "field phi_i covers 1/%d of a turn, 1/1, 1/2 or 1/4 are expected", r->reduction);
+    float turns = r->is_isotropic ? 1 : rintf(2 * SR_PI / (r->phi[r->phis - 1] - r->phi[0]));
+    if (turns != 1 && turns != 2 && turns != 4) // compared as it is: angles that nearly meet make it larger than an int
+        return fail_at(s, 0, "field phi_i covers 1/%.0f of a turn, 1/1, 1/2 or 1/4 are expected", (double)turns);
+    r->reduction = (int)turns;
     int slices = r->phis * r->thetas;
     r->vndf = (struct warp){.nx = (int)vndf->shape[3], .ny = (int)vndf->shape[2]};
     r->vndf.density = tensor_floats(t, vndf, 0);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* RGL's tensor files: the warp against its definition, symmetries, colours, the writer. */
 #include "fixtures.h"
+#include "fuzz/seeds.h"
+#include "measured/private.h"
 
 static struct gloss satin = {.base = 0.4f, .lobe = 0.8f, .exponent = 60};
 
@@ -166,4 +168,30 @@ TEST(polarised_file_gives_its_intensity)
     sr_arena_free(&arena);
     drop(&b);
     drop(&silent);
+}
+
+/* The part of a turn is told as it is, also where it is too small for its inverse to be an int. */
+TEST(rgl_angles_that_cover_another_part_of_a_turn_are_refused)
+{
+    static const struct {
+        float reach;
+        const char *part;
+    } cases[] = {{1.05f, "1/3 of"}, {0.3f, "1/10 of"}, {1e-9f, "1/3141592"}, {1e-30f, "1/3141592"}};
+    static struct seed seed;
+    static const float turn[3] = {-3.14f, 0, 3.14f};
+    for (int i = 0; i < 4; ++i) {
+        seed_make(SEED_RGL_RGB, &seed);
+        size_t phi = 0;
+        while (phi + sizeof turn <= seed.size && memcmp(seed.data + phi, turn, sizeof turn) != 0)
+            ++phi;
+        EXPECT(phi + sizeof turn <= seed.size);
+        memcpy(seed.data + phi, (float[3]){-cases[i].reach, 0, cases[i].reach}, sizeof turn);
+        struct sr_arena arena = {0};
+        struct sr_error error = {0};
+        struct sr_measured *m;
+        EXPECT_EQUAL_INT(measured_load("file", seed.data, seed.size, NULL, &arena, &m, &error), SR_ERROR_INPUT);
+        if (!strstr(error.text, "phi_i") || !strstr(error.text, cases[i].part))
+            test_fail(__FILE__, __LINE__, "%g rad: %s", (double)cases[i].reach, error.text);
+        sr_arena_free(&arena);
+    }
 }
