@@ -165,20 +165,8 @@ static int measure(const struct series *s, uint64_t n, const char *folder, int r
         fprintf(stderr, "sr_bench: %s\n", error.text);
         return 1;
     }
-    struct sr_render_job job = {
-        .scene = scene.scene,
-        .sensor = scene.sensor,
-        .filter = scene.filter,
-        .integrator = scene.integrator,
-        .film = scene.film,
-        .sampler = scene.sampler,
-        .seed = 1,
-        .spp = scene.spp,
-        .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
-        .jitter_pixel = true,
-        .jitter_lambda = true,
-        .threads = is_threads ? (int)n : 1,
-    };
+    struct sr_render_job job = sr_render_job_of(&scene);
+    job.threads = is_threads ? (int)n : 1;
     double best = INFINITY; // the least of several runs: what others do on the machine only adds
     for (int i = 0; i < runs; ++i) {
         struct sr_film *film;

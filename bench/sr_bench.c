@@ -88,23 +88,6 @@ static double timed_replay(const struct sr_scene *scene, const struct sr_ray_log
     return sr_clock_s() - start;
 }
 
-static struct sr_render_job job_of(const struct sr_import_result *scene, uint32_t seed)
-{
-    return (struct sr_render_job){
-        .scene = scene->scene,
-        .sensor = scene->sensor,
-        .filter = scene->filter,
-        .integrator = scene->integrator,
-        .film = scene->film,
-        .sampler = scene->sampler,
-        .seed = seed,
-        .spp = scene->spp,
-        .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
-        .jitter_pixel = true,
-        .jitter_lambda = true,
-    };
-}
-
 /* From nothing to one sample of each pixel. */
 static double time_to_first_pixel(const struct sr_render_job *job, double start_s)
 {
@@ -137,7 +120,8 @@ static int run_case(const struct settings *s, const char *name, const char *path
         return 1;
     }
     struct sr_scene_counts counts = sr_scene_count(scene.scene);
-    struct sr_render_job job = job_of(&scene, s->seed);
+    struct sr_render_job job = sr_render_job_of(&scene);
+    job.seed = s->seed;
     double first_pixel_s = time_to_first_pixel(&job, start_s);
     struct sr_render_report report;
     timed_render(&job, 1, &report); // warms the caches, and tells how many rays there are
@@ -199,7 +183,7 @@ static int run_load(const char *name, const char *path)
     double cpu_s = (double)usage.ru_utime.tv_sec + 1e-6 * (double)usage.ru_utime.tv_usec; // of all threads
     struct sr_scene_counts counts = sr_scene_count(scene.scene);
     uint64_t peak_B = sr_peak_memory_B();
-    struct sr_render_job job = job_of(&scene, 1);
+    struct sr_render_job job = sr_render_job_of(&scene);
     double first_pixel_s = time_to_first_pixel(&job, start_s);
     printf(
         "{\"case\": \"load %s\", \"load_s\": %.3f, \"cpu_s\": %.3f, \"read_s\": %.3f, \"build_s\": %.3f, \"first_pixel_s\": %.3f, \"threads\": %d, \"peak_memory_B\": %llu, \"triangles\": %llu}\n",

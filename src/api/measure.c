@@ -30,7 +30,7 @@ bool sr_world_meter(const struct sr_world *world, size_t index, struct sr_world_
 static sr_status settle(const struct sr_world *world, size_t index, const struct sr_measure_options *o,
                         struct sr_render_job *job, struct sr_measure_settings *s, struct sr_error *error)
 {
-    *job = api_job(world);
+    *job = sr_render_job_of(&world->import);
     job->seed = o->has_seed ? o->seed : job->seed;
     job->threads = o->threads;
     job->lambda.lo = o->lambda_min_nm > 0 ? o->lambda_min_nm : job->lambda.lo;

@@ -19,8 +19,6 @@ sr_status api_tell(const struct sr_error *error, char *text, size_t size);
 /* Takes the image. */
 sr_status api_wrap_image(struct sr_image *image, struct sr_picture **picture, struct sr_error *error);
 
-/* A render as the scene says. */
-struct sr_render_job api_job(const struct sr_world *world);
 /* 100 <= min < max <= 20000 */
 sr_status api_check_lambda(const struct sr_render_job *job, struct sr_error *error);
 

@@ -44,25 +44,6 @@ void sr_world_destroy(struct sr_world *world)
     sr_free(world);
 }
 
-struct sr_render_job api_job(const struct sr_world *world)
-{
-    const struct sr_import_result *i = &world->import;
-    return (struct sr_render_job){
-        .scene = i->scene,
-        .origin = {i->origin[0], i->origin[1], i->origin[2]},
-        .sensor = i->sensor,
-        .filter = i->filter,
-        .integrator = i->integrator,
-        .film = i->film,
-        .sampler = i->sampler,
-        .seed = i->seed,
-        .spp = i->spp,
-        .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
-        .jitter_pixel = i->jitter_pixel,
-        .jitter_lambda = i->jitter_lambda,
-    };
-}
-
 sr_status api_check_lambda(const struct sr_render_job *job, struct sr_error *error)
 {
     if (job->lambda.lo >= 100 && job->lambda.lo < job->lambda.hi && job->lambda.hi <= 20000)
@@ -90,7 +71,7 @@ sr_status sr_world_render(const struct sr_world *world, const struct sr_render_s
     struct sr_render_settings none = {0};
     struct caller caller = {.settings = settings ? settings : &none};
     const struct sr_render_settings *s = caller.settings;
-    struct sr_render_job job = api_job(world);
+    struct sr_render_job job = sr_render_job_of(&world->import);
     *picture = NULL;
     job.spp = s->spp ? s->spp : job.spp;
     job.replicates = s->replicates;
@@ -123,7 +104,7 @@ sr_status sr_world_render(const struct sr_world *world, const struct sr_render_s
 sr_status sr_world_irradiance(const struct sr_world *world, const double point_m[3], const double normal[3],
                               uint32_t samples, uint32_t replicates, struct sr_quantity *E_v, struct sr_quantity *E_e)
 {
-    struct sr_render_job job = api_job(world);
+    struct sr_render_job job = sr_render_job_of(&world->import);
     sr_vec3 p = sr_render_place(&job, point_m), n = {(float)normal[0], (float)normal[1], (float)normal[2]};
     if (samples < 1 || replicates < 2 || !sr_is_finite(p) || !sr_is_finite(n) || !(sr_length(n) > 0))
         return SR_ERROR_USAGE;

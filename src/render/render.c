@@ -1,8 +1,27 @@
 /* SPDX-License-Identifier: MIT */
 /* Jobs: what can be rendered, and whole pictures or parts of their samples from one pass. */
+#include "import/import.h"
 #include "render/private.h"
 
 enum { ORDINARY_BLOCKS = 4 };
+
+struct sr_render_job sr_render_job_of(const struct sr_import_result *scene)
+{
+    return (struct sr_render_job){
+        .scene = scene->scene,
+        .origin = {scene->origin[0], scene->origin[1], scene->origin[2]},
+        .sensor = scene->sensor,
+        .filter = scene->filter,
+        .integrator = scene->integrator,
+        .film = scene->film,
+        .sampler = scene->sampler,
+        .seed = scene->seed,
+        .spp = scene->spp,
+        .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
+        .jitter_pixel = scene->jitter_pixel,
+        .jitter_lambda = scene->jitter_lambda,
+    };
+}
 
 /* Whether paths from the lights bring light to any place of the picture. */
 static bool has_splats(const struct sr_render_job *job)

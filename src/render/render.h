@@ -16,6 +16,8 @@
 
 #include <stdatomic.h>
 
+struct sr_import_result;
+
 /* What a progress callback is told. */
 struct sr_render_progress {
     double share;               // [1] of the work that is done
@@ -123,6 +125,10 @@ struct sr_render_job {
     void *user;
     const atomic_bool *cancel; // NULL, or set by somebody who wants to stop; what is done is kept
 };
+
+/* The picture that a scene's file asks for: all its samples, the visible wavelengths, all processors. The scene stays
+ * the import's. */
+struct sr_render_job sr_render_job_of(const struct sr_import_result *scene);
 
 /* A point of the world [m], where the scene has it. */
 static inline sr_vec3 sr_render_place(const struct sr_render_job *job, const double world[3])

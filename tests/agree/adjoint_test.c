@@ -25,7 +25,7 @@ static struct means render_by(const char *path, const char *integrator, uint32_t
     struct sr_error error = {0};
     if (!import_scene(path, &options, &scene, &error))
         test_fail(__FILE__, __LINE__, "%s", error.text);
-    struct sr_render_job job = job_of(&scene);
+    struct sr_render_job job = sr_render_job_of(&scene);
     job.replicates = REPLICATES;
     job.spp = REPLICATES * (uint32_t)ceil(spp * effort() / REPLICATES);
     job.seed = seed;
@@ -252,7 +252,7 @@ TEST(bidirectional_paths_agree_with_the_reference_of_veach_s_room)
     struct sr_error error = {0};
     if (!import_scene(path, &options, &scene, &error))
         test_fail(__FILE__, __LINE__, "%s", error.text);
-    struct sr_render_job job = job_of(&scene);
+    struct sr_render_job job = sr_render_job_of(&scene);
     job.spp = job.replicates = 4;
     struct sr_render_report report;
     struct sr_film *film = render_or_fail(&job, &report);

@@ -30,7 +30,7 @@ static void expect_one_hash(const char *integrator, uint32_t replicates)
     struct sr_import_options options = {.width = 70, .height = 50, .spp = 8, .integrator = integrator};
     if (!import_scene(SR_TEST_SOURCE_DIR "/scenes/cornell-box.pbrt", &options, &scene, &error))
         test_fail(__FILE__, __LINE__, "%s", error.text);
-    struct sr_render_job job = job_of(&scene);
+    struct sr_render_job job = sr_render_job_of(&scene);
     job.replicates = replicates;
     uint64_t one = hash_of(job, 1, 16);
     static const int threads[] = {1, 2, 3, 7}, tiles[] = {5, 8, 16, 64};
@@ -59,7 +59,7 @@ TEST(bytes_of_media_do_not_depend_on_threads_or_tiles)
     struct sr_import_options options = {.width = 64, .height = 40, .spp = 8};
     if (!import_scene(test_reference_file("scenes/spotfog/spotfog.ref.pbrt"), &options, &scene, &error))
         test_fail(__FILE__, __LINE__, "%s", error.text);
-    struct sr_render_job job = job_of(&scene);
+    struct sr_render_job job = sr_render_job_of(&scene);
     EXPECT_EQUAL_TEXT(job.integrator.model->name, "volpath");
     uint64_t one = hash_of(job, 1, 16);
     EXPECT(hash_of(job, 2, 5) == one && hash_of(job, 3, 64) == one && hash_of(job, 7, 8) == one);
@@ -88,7 +88,7 @@ TEST(bytes_of_what_moves_do_not_depend_on_threads_or_tiles)
                 "Translate .1 0 0 Scale .5 .6 .7 Shape \"sphere\" Shape \"cylinder\" \"float radius\" 1.2\n"),
             &options, &scene, &error))
         test_fail(__FILE__, __LINE__, "%s", error.text);
-    struct sr_render_job job = job_of(&scene);
+    struct sr_render_job job = sr_render_job_of(&scene);
     uint64_t one = hash_of(job, 1, 16);
     EXPECT(hash_of(job, 2, 8) == one && hash_of(job, 3, 64) == one && hash_of(job, 7, 5) == one);
     sr_import_result_free(&scene);
@@ -101,7 +101,7 @@ TEST(one_sample_alone_is_what_the_render_added)
     struct sr_import_options options = {.width = 16, .height = 16, .spp = 4};
     if (!import_scene(SR_TEST_SOURCE_DIR "/scenes/cornell-box.pbrt", &options, &scene, &error))
         test_fail(__FILE__, __LINE__, "%s", error.text);
-    struct sr_render_job job = job_of(&scene);
+    struct sr_render_job job = sr_render_job_of(&scene);
     struct sr_render_report report;
     struct sr_film *film = render_or_fail(&job, &report);
     struct sr_worker worker = {0};
@@ -130,7 +130,7 @@ static void expect_no_allocation(const char *integrator)
     struct sr_import_options options = {.width = 32, .height = 32, .spp = 4, .integrator = integrator};
     if (!import_scene(SR_TEST_SOURCE_DIR "/scenes/cornell-box.pbrt", &options, &scene, &error))
         test_fail(__FILE__, __LINE__, "%s", error.text);
-    struct sr_render_job job = job_of(&scene);
+    struct sr_render_job job = sr_render_job_of(&scene);
     uint64_t calls[2];
     for (int i = 0; i < 2; ++i) {
         job.spp = i ? 32 : 4;

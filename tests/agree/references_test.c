@@ -202,7 +202,7 @@ TEST(scenes_agree_with_reference_images)
             continue;
         }
         struct sr_image *images[2];
-        struct sr_render_job job = job_of(&scene);
+        struct sr_render_job job = sr_render_job_of(&scene);
         for (uint32_t seed = 0; seed < 2; ++seed) {
             struct sr_render_report report;
             job.seed = seed + 1;

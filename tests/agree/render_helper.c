@@ -9,23 +9,6 @@ bool import_scene(const char *path, const struct sr_import_options *options, str
     return sr_import_pbrt(path, options ? options : &none, scene, &silent, error) == SR_OK;
 }
 
-struct sr_render_job job_of(const struct sr_import_result *scene)
-{
-    return (struct sr_render_job){
-        .scene = scene->scene,
-        .sensor = scene->sensor,
-        .filter = scene->filter,
-        .integrator = scene->integrator,
-        .film = scene->film,
-        .sampler = scene->sampler,
-        .seed = scene->seed,
-        .spp = scene->spp,
-        .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
-        .jitter_pixel = scene->jitter_pixel,
-        .jitter_lambda = scene->jitter_lambda,
-    };
-}
-
 struct sr_film *render_or_fail(const struct sr_render_job *job, struct sr_render_report *report)
 {
     struct sr_error error = {0};

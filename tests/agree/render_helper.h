@@ -13,7 +13,6 @@
 bool import_scene(const char *path, const struct sr_import_options *options, struct sr_import_result *scene,
                   struct sr_error *error);
 /* A job with the scene's own settings. */
-struct sr_render_job job_of(const struct sr_import_result *scene);
 /* The film, or a failed test. */
 struct sr_film *render_or_fail(const struct sr_render_job *job, struct sr_render_report *report);
 /* A scene text as a file in the test's folder; static buffer. */

@@ -91,7 +91,7 @@ static void expect_resumes(const char *integrator, uint32_t replicates, uint32_t
         .width = 40, .height = 30, .spp = is_slow_build() ? 16 : 64, .integrator = integrator};
     if (!import_scene(SR_TEST_SOURCE_DIR "/scenes/cornell-box.pbrt", &options, &scene, &error))
         test_fail(__FILE__, __LINE__, "%s", error.text);
-    struct sr_render_job job = job_of(&scene);
+    struct sr_render_job job = sr_render_job_of(&scene);
     job.replicates = replicates;
     job.adaptive.is_on = is_adaptive;
     job.film.buckets = buckets;
@@ -126,7 +126,7 @@ TEST(finished_work_can_be_kept)
     struct sr_import_options options = {.width = 20, .height = 15, .spp = 4, .integrator = "bdpt"};
     if (!import_scene(SR_TEST_SOURCE_DIR "/scenes/cornell-box.pbrt", &options, &scene, &error))
         test_fail(__FILE__, __LINE__, "%s", error.text);
-    struct sr_render_job job = job_of(&scene);
+    struct sr_render_job job = sr_render_job_of(&scene);
     job.with_aov = true;
     struct sr_arena arena = {0};
     struct sr_render_keep keep = {.path = beside(""),

@@ -75,20 +75,8 @@ struct world world_of(const char *format, ...)
     if (sr_file_write(path, text, (size_t)length, &error) != SR_OK ||
         sr_import_pbrt(path, &options, &w.scene, &silent, &error) != SR_OK)
         test_fail(__FILE__, __LINE__, "%s", error.text);
-    const struct sr_import_result *s = &w.scene;
-    w.job = (struct sr_render_job){
-        .scene = s->scene,
-        .sensor = s->sensor,
-        .filter = s->filter,
-        .integrator = s->integrator,
-        .film = s->film,
-        .sampler = s->sampler,
-        .seed = 1,
-        .spp = s->spp,
-        .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
-        .jitter_pixel = true,
-        .jitter_lambda = true,
-    };
+    w.job = sr_render_job_of(&w.scene);
+    w.job.seed = 1;
     return w;
 }
 

@@ -110,18 +110,8 @@ static void judge_scene(const void *data, size_t size)
     sr_status status = sr_import_pbrt(OUTER_NAME, &options, &r, NULL, &error);
     judge_status(status, &error);
     if (status == SR_OK) {
-        struct sr_render_job job = {.scene = r.scene,
-                                    .sensor = r.sensor,
-                                    .filter = r.filter,
-                                    .integrator = r.integrator,
-                                    .film = r.film,
-                                    .sampler = r.sampler,
-                                    .seed = r.seed,
-                                    .spp = 1,
-                                    .lambda = {360, 830},
-                                    .jitter_pixel = true,
-                                    .jitter_lambda = true,
-                                    .threads = 1};
+        struct sr_render_job job = sr_render_job_of(&r);
+        job.spp = job.threads = 1;
         struct sr_film *film = NULL;
         struct sr_render_report report;
         if ((uint64_t)r.film.width * r.film.height <= 64 && r.scene)

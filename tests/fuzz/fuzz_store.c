@@ -124,18 +124,10 @@ static void make_seed(int number, struct seed *s)
     if (!make_temporary_folder("fuzz", folder) || sr_import_pbrt(NAME, &options, &r, NULL, &error) != SR_OK)
         exit(4);
     snprintf(path, sizeof path, "%s/part", folder);
-    struct sr_render_job job = {.scene = r.scene,
-                                .sensor = r.sensor,
-                                .filter = r.filter,
-                                .integrator = r.integrator,
-                                .film = r.film,
-                                .sampler = r.sampler,
-                                .spp = 4,
-                                .lambda = {360, 830},
-                                .jitter_pixel = true,
-                                .jitter_lambda = true,
-                                .threads = 1,
-                                .with_aov = number >= 0};
+    struct sr_render_job job = sr_render_job_of(&r);
+    job.spp = 4;
+    job.threads = 1;
+    job.with_aov = number >= 0;
     if (sr_render_samples(&job, (struct sr_render_range){0, 3}, &part, &report, &error) != SR_OK ||
         sr_render_part_write(part, "a 1\n", "b", path, &error) != SR_OK ||
         sr_file_read(path, SEED_SIZE, &bytes, &size, &error) != SR_OK)

@@ -164,19 +164,9 @@ sr_status hostile_render(const char *name, const char *out, struct sr_error *err
     sr_status status = sr_import_pbrt(name, &options, &r, NULL, error);
     if (status != SR_OK)
         return status;
-    struct sr_render_job job = {.scene = r.scene,
-                                .sensor = r.sensor,
-                                .filter = r.filter,
-                                .integrator = r.integrator,
-                                .film = r.film,
-                                .sampler = r.sampler,
-                                .seed = r.seed,
-                                .spp = 4,
-                                .lambda = {360, 830},
-                                .jitter_pixel = true,
-                                .jitter_lambda = true,
-                                .threads = 1,
-                                .with_aov = true};
+    struct sr_render_job job = sr_render_job_of(&r);
+    job.threads = 1;
+    job.with_aov = true;
     struct sr_film *film = NULL;
     struct sr_image *image = NULL;
     struct sr_render_report report;

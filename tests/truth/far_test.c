@@ -29,7 +29,7 @@ static struct reading measure_by(const char *integrator, const char *before, con
     struct sr_error error = {0};
     if (sr_import_pbrt(scene_file("far.pbrt", text), &options, &scene, &log, &error) != SR_OK)
         test_fail(__FILE__, __LINE__, "%s", error.text);
-    struct sr_render_job job = job_of(&scene);
+    struct sr_render_job job = sr_render_job_of(&scene);
     job.threads = 1;
     memcpy(job.origin, scene.origin, sizeof job.origin);
     struct reading r = {.bounds = sr_scene_bounds(scene.scene), .warnings = (int)log.warning_count};
@@ -123,7 +123,7 @@ TEST(pictures_of_far_places_are_the_same_bytes)
         struct sr_error error = {0};
         if (!import_scene(scene_file("far.pbrt", text), NULL, &scenes[i], &error))
             test_fail(__FILE__, __LINE__, "%s", error.text);
-        struct sr_render_job job = job_of(&scenes[i]);
+        struct sr_render_job job = sr_render_job_of(&scenes[i]);
         struct sr_render_report report;
         job.with_aov = true;
         films[i] = render_or_fail(&job, &report);
@@ -200,7 +200,7 @@ static struct sr_film *picture_of(const char *integrator, double brightness, str
     struct sr_error error = {0};
     if (!import_scene(scene_file("lights.pbrt", text), NULL, scene, &error))
         test_fail(__FILE__, __LINE__, "%s", error.text);
-    struct sr_render_job job = job_of(scene);
+    struct sr_render_job job = sr_render_job_of(scene);
     struct sr_render_report report;
     struct sr_film *film = render_or_fail(&job, &report);
     EXPECT_EQUAL_INT(report.dropped, 0);

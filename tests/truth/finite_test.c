@@ -75,7 +75,7 @@ TEST(samples_that_are_not_finite_are_counted_to_the_last)
     poisoned_material = *hit.material->model;
     poisoned_material.bsdf = poisoned_bsdf;
     ((struct sr_material *)(uintptr_t)hit.material)->model = &poisoned_material;
-    struct sr_render_job job = job_of(&scene);
+    struct sr_render_job job = sr_render_job_of(&scene);
     path_model = job.integrator.model;
     watched = *path_model;
     watched.L = watched_L;
@@ -119,7 +119,7 @@ TEST(paths_from_lights_beside_the_sensor_are_not_dropped)
     struct sr_error error = {0};
     if (!import_scene(scene_file("room.pbrt", text), NULL, &scene, &error))
         test_fail(__FILE__, __LINE__, "%s", error.text);
-    struct sr_render_job job = job_of(&scene);
+    struct sr_render_job job = sr_render_job_of(&scene);
     struct sr_render_report report;
     struct sr_film *film = render_or_fail(&job, &report);
     EXPECT_EQUAL_INT(report.dropped, 0);

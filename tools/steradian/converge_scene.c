@@ -43,15 +43,12 @@ static sr_status open_small(const struct converge_arguments *a, uint32_t width, 
 
 static struct sr_render_job job_of(const struct converge_arguments *a, const struct sr_import_result *scene)
 {
-    return (struct sr_render_job){.scene = scene->scene,
-                                  .sensor = scene->sensor,
-                                  .filter = scene->filter,
-                                  .integrator = scene->integrator,
-                                  .film = scene->film,
-                                  .seed = (uint32_t)a->seed,
-                                  .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
-                                  .jitter_lambda = true,
-                                  .threads = (int)a->threads};
+    struct sr_render_job job = sr_render_job_of(scene);
+    job.seed = (uint32_t)a->seed;
+    job.jitter_pixel = false;
+    job.jitter_lambda = true;
+    job.threads = (int)a->threads;
+    return job;
 }
 
 /* The luminances of a picture's pixels, and the variances of their means or NULL. */

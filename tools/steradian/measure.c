@@ -302,19 +302,16 @@ sr_status measure_spectrometer(const struct measure_arguments *a, const struct s
 
 struct sr_render_job measure_job(const struct measure_arguments *a, const struct sr_import_result *scene)
 {
-    return (struct sr_render_job){
-        .scene = scene->scene,
-        .origin = {scene->origin[0], scene->origin[1], scene->origin[2]},
-        .integrator = scene->integrator,
-        .sampler = !a->sampler                        ? scene->sampler
-                   : strcmp(a->sampler, "sobol") == 0 ? SR_SAMPLER_SOBOL
-                                                      : SR_SAMPLER_INDEPENDENT,
-        .seed = a->has_seed ? (uint32_t)a->seed : scene->seed,
-        .lambda = {(float)a->lambda[0], (float)a->lambda[1]},
-        .jitter_lambda = true,
-        .threads = (int)a->threads,
-        .cancel = &render_interrupted,
-    };
+    struct sr_render_job job = sr_render_job_of(scene);
+    if (a->sampler)
+        job.sampler = strcmp(a->sampler, "sobol") == 0 ? SR_SAMPLER_SOBOL : SR_SAMPLER_INDEPENDENT;
+    if (a->has_seed)
+        job.seed = (uint32_t)a->seed;
+    job.lambda = (struct sr_lambda_range){(float)a->lambda[0], (float)a->lambda[1]};
+    job.jitter_lambda = true;
+    job.threads = (int)a->threads;
+    job.cancel = &render_interrupted;
+    return job;
 }
 
 static int list_meters(const struct measure_arguments *a, const struct sr_import_result *scene)

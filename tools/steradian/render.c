@@ -120,32 +120,27 @@ static struct sr_render_job make_job(const struct render_arguments *a, const str
                                      bool with_aov, struct rendering *r)
 {
     bool has_target = a->adaptive.error > 0 || a->adaptive.time_s > 0;
-    return (struct sr_render_job){
-        .scene = scene->scene,
-        .origin = {scene->origin[0], scene->origin[1], scene->origin[2]},
-        .sensor = scene->sensor,
-        .filter = scene->filter,
-        .integrator = scene->integrator,
-        .film = scene->film,
-        .sampler = !a->sampler                        ? scene->sampler
-                   : strcmp(a->sampler, "sobol") == 0 ? SR_SAMPLER_SOBOL
-                                                      : SR_SAMPLER_INDEPENDENT,
-        .seed = a->has_seed ? (uint32_t)a->seed : scene->seed,
-        .spp = has_target && !a->import.spp ? MOST_SPP : scene->spp,
-        .adaptive = a->adaptive,
-        .replicates = (uint32_t)a->replicates,
-        .lambda = {(float)a->lambda[0], (float)a->lambda[1]},
-        .jitter_pixel = scene->jitter_pixel && !a->no_pixel_jitter,
-        .jitter_lambda = scene->jitter_lambda && !a->no_lambda_jitter,
-        .with_aov = with_aov,
-        .threads = a->threads ? (int)a->threads : render_crew.threads,
-        .crew = render_crew.hooks,
-        .tile = choose_tile(a, scene),
-        .progress = render_on_progress,
-        .progress_interval_s = 0.5,
-        .user = r,
-        .cancel = &render_interrupted,
-    };
+    struct sr_render_job job = sr_render_job_of(scene);
+    if (a->sampler)
+        job.sampler = strcmp(a->sampler, "sobol") == 0 ? SR_SAMPLER_SOBOL : SR_SAMPLER_INDEPENDENT;
+    if (a->has_seed)
+        job.seed = (uint32_t)a->seed;
+    if (has_target && !a->import.spp)
+        job.spp = MOST_SPP;
+    job.adaptive = a->adaptive;
+    job.replicates = (uint32_t)a->replicates;
+    job.lambda = (struct sr_lambda_range){(float)a->lambda[0], (float)a->lambda[1]};
+    job.jitter_pixel &= !a->no_pixel_jitter;
+    job.jitter_lambda &= !a->no_lambda_jitter;
+    job.with_aov = with_aov;
+    job.threads = a->threads ? (int)a->threads : render_crew.threads;
+    job.crew = render_crew.hooks;
+    job.tile = choose_tile(a, scene);
+    job.progress = render_on_progress;
+    job.progress_interval_s = 0.5;
+    job.user = r;
+    job.cancel = &render_interrupted;
+    return job;
 }
 
 void render_print_replay(const struct rendering *r, const struct sr_render_report *report)

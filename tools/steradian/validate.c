@@ -161,14 +161,11 @@ static sr_status measure(const struct arguments *a, const char *folder, struct f
         sr_import_result_free(&scene);
         return sr_fail(error, SR_ERROR_INPUT, "%s has no meter \"%s\", which %s names", path, f->meter, a->table);
     }
-    struct sr_render_job job = {.scene = scene.scene,
-                                .integrator = scene.integrator,
-                                .sampler = SR_SAMPLER_SOBOL,
-                                .seed = (uint32_t)a->seed,
-                                .lambda = {SR_LAMBDA_MIN, SR_LAMBDA_MAX},
-                                .jitter_lambda = true,
-                                .threads = (int)a->threads,
-                                .cancel = &render_interrupted};
+    struct sr_render_job job = sr_render_job_of(&scene);
+    job.sampler = SR_SAMPLER_SOBOL;
+    job.seed = (uint32_t)a->seed;
+    job.threads = (int)a->threads;
+    job.cancel = &render_interrupted;
     // the target is an expanded uncertainty, the goal a standard one; rounds stop a little below
     double k = sr_student_quantile(0.975, REPLICATES - 1);
     struct sr_measure_settings settings = {
