@@ -5,11 +5,13 @@ PREFIX ?= /usr/local
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 OUT ?= out
 SECONDS ?= 60
+# further options of CMake, such as -DSTERADIAN_WERROR=ON
+CONFIGURE ?=
 
 .PHONY: all render test test-asan test-tsan fuzz soak soak-rays same-bytes mutants validate bench scale wavelengths check figures format format-reference install clean packages
 
 all: packages
-	@cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release >$(BUILD).log 2>&1 || { cat $(BUILD).log; exit 1; }
+	@cmake -S . -B $(BUILD) -DCMAKE_BUILD_TYPE=Release $(CONFIGURE) >$(BUILD).log 2>&1 || { cat $(BUILD).log; exit 1; }
 	@cmake --build $(BUILD) --parallel $(JOBS)
 
 packages:
@@ -26,18 +28,18 @@ test: all
 	ctest --test-dir $(BUILD) --output-on-failure --parallel $(JOBS)
 
 test-asan: packages
-	cmake --preset asan >/dev/null
+	cmake --preset asan $(CONFIGURE) >/dev/null
 	cmake --build build-asan --parallel $(JOBS)
 	ctest --test-dir build-asan --output-on-failure --parallel $(JOBS)
 
 test-tsan: packages
-	cmake --preset tsan >/dev/null
+	cmake --preset tsan $(CONFIGURE) >/dev/null
 	cmake --build build-tsan --parallel $(JOBS)
 	ctest --test-dir build-tsan --output-on-failure -L tsan
 
 # each reader of foreign files, SECONDS long, with sanitizers; by libFuzzer where clang is there
 fuzz: packages
-	cmake -S . -B build-fuzz -DSTERADIAN_FUZZ=ON -DBUILD_TESTING=OFF -DCMAKE_BUILD_TYPE=Debug \
+	cmake -S . -B build-fuzz -DSTERADIAN_FUZZ=ON -DBUILD_TESTING=OFF -DCMAKE_BUILD_TYPE=Debug $(CONFIGURE) \
 	  $$(command -v clang >/dev/null && echo -DCMAKE_C_COMPILER=clang) >/dev/null
 	@cmake --build build-fuzz --parallel $(JOBS) --target fuzz_programs >build-fuzz.log 2>&1 || { cat build-fuzz.log; exit 1; }
 	scripts/fuzz build-fuzz/fuzz $(SECONDS)
