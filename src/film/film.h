@@ -105,12 +105,13 @@ struct sr_film_pixel {
 
 /* ---- splats: light that paths from the lights bring to any place of the picture ----
  *
- * Sums are integers of 128 bits in units of 2^-56, so that they do not depend on the order in which threads add to
- * them; each pixel has one for each channel and group of paths. A value beyond 2^39 is dropped and counted: 2^32 splats
- * of a pixel cannot overflow. docs/decisions/0011-splats.md */
+ * Sums are integers of 128 bits, so that they do not depend on the order in which threads add to them; each pixel has
+ * one for each channel and group of paths. A value beyond 2^95 units is dropped and counted: 2^32 splats of a pixel
+ * cannot overflow. docs/decisions/0011-splats.md */
 enum { SR_SPLAT_GROUPS = 16 }; // at most; independent replicates beyond them share a group
 struct sr_film_splats {
     uint32_t groups;                 // 2 or more: their spread tells the error
+    double unit;                     // [the picture's] of the sums: a power of two
     uint64_t *words;                 // [pixel][channel][group][low, high]
     uint64_t paths[SR_SPLAT_GROUPS]; // begun at the lights, of each group
     uint64_t dropped;                // values that were not finite or too large
@@ -146,7 +147,7 @@ void sr_film_store(struct sr_film *film, uint32_t x, uint32_t y,
                    const struct sr_film_block *b); // x, y in the rendered part
 
 /* Makes room for splats; [B] for each pixel, to be known before. */
-sr_status sr_film_add_splats(struct sr_film *film, uint32_t groups, struct sr_error *error);
+sr_status sr_film_add_splats(struct sr_film *film, uint32_t groups, double unit, struct sr_error *error);
 size_t sr_film_splats_B(uint32_t groups);
 /* rgb is what the mean over all places of the whole picture's raster would be multiplied by the filter there: each
  * pixel whose filter reaches `raster` gains f rgb, and a pixel's value is the mean over paths. Threads may call it at

@@ -4,14 +4,14 @@
  *     pixel = (sum over paths of f(raster - centre) rgb) / paths,      var(pixel) = sum over groups (m_g - m)^2 / (G (G
  * - 1))
  *
- * A sum is a signed integer of 128 bits in two words, in units of 2^-56: integers add in any order to the same number,
- * floats do not. The lower word is added to atomically; whoever makes it overflow carries, so that the pair is right
- * when all are done (while others add, a reader may miss a carry that is on its way). G groups of paths, m_g the mean
- * of each, tell the error. Limits: a splat is rounded to 2^-56 [the picture's unit]; those beyond 2^39 are dropped and
+ * A sum is a signed integer of 128 bits in two words, in a unit that is a power of two: integers add in any order to
+ * the same number, floats do not. The lower word is added to atomically; whoever makes it overflow carries, so that the
+ * pair is right when all are done (while others add, a reader may miss a carry that is on its way). G groups of paths,
+ * m_g the mean of each, tell the error. Limits: a splat is rounded to the unit; those beyond 2^95 of it are dropped and
  * counted. */
 #include "film/film.h"
 
-static const double UNITS = 0x1p56, LARGEST = 0x1p39;
+static const double LARGEST = 0x1p95; // [unit]
 
 struct wide { // two's complement
     uint64_t low, high;
@@ -29,12 +29,13 @@ size_t sr_film_splats_B(uint32_t groups)
     return (size_t)groups * 3 * sizeof(struct wide);
 }
 
-sr_status sr_film_add_splats(struct sr_film *film, uint32_t groups, struct sr_error *error)
+sr_status sr_film_add_splats(struct sr_film *film, uint32_t groups, double unit, struct sr_error *error)
 {
     struct sr_film_splats *s = sr_alloc(sizeof *s);
     groups = groups < 2 ? 2 : groups > SR_SPLAT_GROUPS ? SR_SPLAT_GROUPS : groups;
     if (s)
         *s = (struct sr_film_splats){.groups = groups,
+                                     .unit = unit,
                                      .words = sr_alloc((size_t)film->width * film->height * sr_film_splats_B(groups))};
     film->splats = s;
     return s && s->words ? SR_OK
@@ -56,29 +57,29 @@ static void add_wide(uint64_t words[2], struct wide a)
         __atomic_fetch_add(&words[1], a.high, __ATOMIC_RELAXED);
 }
 
-static void add(uint64_t words[2], double value)
+static void add(uint64_t words[2], double value) // [unit]
 {
-    double units = rint(fabs(value) * UNITS), high = floor(units * 0x1p-64);
+    double units = rint(fabs(value)), high = floor(units * 0x1p-64);
     struct wide a = {(uint64_t)(units - high * 0x1p64), (uint64_t)high};
     if (value < 0)
         a = negative(a);
     add_wide(words, a);
 }
 
-static double sum_of(const uint64_t words[2])
+static double sum_of(const uint64_t words[2]) // [unit]
 {
     struct wide a = {__atomic_load_n(&words[0], __ATOMIC_RELAXED), __atomic_load_n(&words[1], __ATOMIC_RELAXED)};
     bool is_negative = a.high >> 63;
     if (is_negative) // its magnitude, lest small numbers be lost beside 2^64
         a = negative(a);
-    double sum = ((double)a.high * 0x1p64 + (double)a.low) / UNITS;
+    double sum = (double)a.high * 0x1p64 + (double)a.low;
     return is_negative ? -sum : sum;
 }
 
 void sr_film_splat(struct sr_film *film, const struct sr_filter *filter, uint32_t group, sr_vec2 raster,
                    const float rgb[3])
 {
-    double pixels = (double)film->width * film->height;
+    double pixels = (double)film->width * film->height, unit = film->splats->unit;
     float largest = sr_max(fabsf(rgb[0]), sr_max(fabsf(rgb[1]), fabsf(rgb[2])));
     // pixels whose centres are less than the radius away
     float x = raster.x - 0.5f - (float)film->settings.x0, y = raster.y - 0.5f - (float)film->settings.y0;
@@ -89,7 +90,7 @@ void sr_film_splat(struct sr_film *film, const struct sr_filter *filter, uint32_
     if (last_x < 0 || last_y < 0 || first_x >= (float)film->width || first_y >= (float)film->height)
         return;
     if (!(isfinite(rgb[0]) && isfinite(rgb[1]) && isfinite(rgb[2])) || isnan(x) || isnan(y) ||
-        (double)largest * fabs(filter->inverse_integral) > LARGEST * pixels) {
+        (double)largest * fabs(filter->inverse_integral) > LARGEST * unit * pixels) {
         __atomic_fetch_add(&film->splats->dropped, 1, __ATOMIC_RELAXED);
         return;
     }
@@ -98,7 +99,7 @@ void sr_film_splat(struct sr_film *film, const struct sr_filter *filter, uint32_
     for (int j = y0; j <= y1; ++j)
         for (int i = x0; i <= x1; ++i) {
             double f = (double)filter->model->value(filter->self, (sr_vec2){x - (float)i, y - (float)j}) *
-                       filter->inverse_integral / pixels;
+                       filter->inverse_integral / pixels / unit;
             for (int c = 0; c < 3; ++c)
                 if (f * (double)rgb[c] != 0)
                     add(words_of(film, (size_t)j * film->width + (size_t)i, c, group), f * (double)rgb[c]);
@@ -124,7 +125,7 @@ double sr_film_splat_mean(const struct sr_film *film, size_t pixel, int channel)
     double n = s ? all_paths(s) : 0, sum = 0;
     for (uint32_t g = 0; n > 0 && g < s->groups; ++g)
         sum += sum_of(words_of(film, pixel, channel, g));
-    return n > 0 ? sum * ((double)film->width * film->height) / n : 0;
+    return n > 0 ? sum * s->unit * ((double)film->width * film->height) / n : 0;
 }
 
 double sr_film_splat_variance(const struct sr_film *film, uint32_t x0, uint32_t y0, uint32_t x1, uint32_t y1,
@@ -147,7 +148,7 @@ double sr_film_splat_variance(const struct sr_film *film, uint32_t x0, uint32_t 
         double deviation = sums[g] - all * (double)s->paths[g] / n;
         spread += deviation * deviation;
     }
-    double scale = (double)film->width * film->height / n;
+    double scale = s->unit * ((double)film->width * film->height) / n;
     return used > 1 ? spread * scale * scale * used / (used - 1) : NAN;
 }
 

@@ -219,5 +219,6 @@ float sr_lights_pmf_by_area(const struct sr_lights *lights, uint32_t index);
 bool sr_lights_emit(const struct sr_lights *lights, float u_light, sr_vec2 u_place, sr_vec2 u_direction,
                     const struct sr_wavelengths *w, struct sr_light_ray *ray);
 float sr_lights_emit_pmf(const struct sr_lights *lights, uint32_t index);
+double sr_lights_emitted(const struct sr_lights *lights); // [cd sr] by all of them, as they are chosen by
 
 #endif

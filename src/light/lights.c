@@ -264,3 +264,9 @@ float sr_lights_emit_pmf(const struct sr_lights *lights, uint32_t index)
     const struct choice *c = lights->tree;
     return c ? pmf_by(lights, c->emitted, emitted_by, index) : 0;
 }
+
+double sr_lights_emitted(const struct sr_lights *lights)
+{
+    const struct choice *c = lights->tree;
+    return c ? c->emitted[block_count(lights->count)] : 0;
+}

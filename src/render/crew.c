@@ -112,7 +112,7 @@ struct sr_crew_batches *sr_crew_batches_create(const struct sr_render_job *job, 
     for (int i = 0; i < 2; ++i) {
         struct sr_film *splats = &b->batch[i].splats;
         *splats = (struct sr_film){.settings = film->settings, .width = film->width, .height = film->height};
-        if (film->splats && sr_film_add_splats(splats, film->splats->groups, error) != SR_OK) {
+        if (film->splats && sr_film_add_splats(splats, film->splats->groups, film->splats->unit, error) != SR_OK) {
             sr_crew_batches_destroy(b);
             return NULL;
         }

@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The splats' counters: groups, paths of each group, dropped. */
-enum { PATHS_COUNT = SR_SPLAT_GROUPS + 2 };
+/* The splats' counters: groups, paths of each group, dropped, and the unit's bits. */
+enum { DROPPED = SR_SPLAT_GROUPS + 1, UNIT, PATHS_COUNT };
 
 struct part {
     const char *name;
@@ -34,7 +34,8 @@ sr_status sr_film_put(struct sr_store_out *out, const char *name, const struct s
     if (film->splats) {
         paths[0] = film->splats->groups;
         memcpy(&paths[1], film->splats->paths, sizeof film->splats->paths);
-        paths[PATHS_COUNT - 1] = film->splats->dropped;
+        paths[DROPPED] = film->splats->dropped;
+        memcpy(&paths[UNIT], &film->splats->unit, sizeof film->splats->unit);
     }
     parts_of(film, paths, parts);
     sr_status status = SR_OK;
@@ -69,8 +70,11 @@ sr_status sr_film_get(const struct sr_store_in *in, const char *path, const char
     if (paths[0] != film->splats->groups)
         return sr_fail(error, SR_ERROR_INPUT, "%s: has %llu groups of paths from the lights, and this picture %u", path,
                        (unsigned long long)paths[0], film->splats->groups);
+    if (memcmp(&paths[UNIT], &film->splats->unit, sizeof film->splats->unit) != 0)
+        return sr_fail(error, SR_ERROR_INPUT,
+                       "%s: light from paths of the lights is in another unit than this picture's", path);
     memcpy(film->splats->paths, &paths[1], sizeof film->splats->paths);
-    film->splats->dropped = paths[PATHS_COUNT - 1];
+    film->splats->dropped = paths[DROPPED];
     return SR_OK;
 }
 
@@ -78,7 +82,7 @@ struct sr_film *sr_film_twin(const struct sr_film *film, struct sr_error *error)
 {
     struct sr_film *twin;
     if (sr_film_create(&film->settings, film->has_aov, &twin, error) == SR_OK && film->splats &&
-        sr_film_add_splats(twin, film->splats->groups, error) != SR_OK) {
+        sr_film_add_splats(twin, film->splats->groups, film->splats->unit, error) != SR_OK) {
         sr_film_destroy(twin);
         twin = NULL;
     }

@@ -385,7 +385,8 @@ sr_status sr_render_part_add(struct sr_render_part *to, struct sr_render_part *f
         to->film->width != from->film->width || to->film->height != from->film->height ||
         to->film->has_aov != from->film->has_aov || to->film->settings.buckets != from->film->settings.buckets ||
         !to->film->splats != !from->film->splats ||
-        (to->film->splats && to->film->splats->groups != from->film->splats->groups))
+        (to->film->splats && (to->film->splats->groups != from->film->splats->groups ||
+                              to->film->splats->unit != from->film->splats->unit)))
         return sr_fail(error, SR_ERROR_INPUT, "the parts are not of one picture");
     struct sr_render_range a, b;
     for (size_t i = 0; sr_render_part_range(to, i, &a); ++i)

@@ -31,6 +31,7 @@ struct node_head {
 };
 struct splats_head {
     uint64_t dropped, paths[SR_SPLAT_GROUPS];
+    double unit;
 };
 _Static_assert(sizeof(struct head) == 26 * 4 + 5 * 8 && sizeof(struct node_head) == 12, "written as they stand");
 enum { NAME = SR_STORE_NAME, MOST_BUCKETS = 1 << 16 };
@@ -113,7 +114,7 @@ sr_status sr_part_put(struct sr_store_out *out, const struct sr_render_part *par
 static void put_splats(struct sr_store_out *out, const struct sr_film *film, struct sr_error *error)
 {
     const struct sr_film_splats *s = film->splats;
-    struct splats_head head = {.dropped = s->dropped};
+    struct splats_head head = {.dropped = s->dropped, .unit = s->unit};
     memcpy(head.paths, s->paths, sizeof head.paths);
     sr_store_put(out, "splats", &head, sizeof head, error);
     sr_store_put(out, "splat words", s->words, words_B(film), error);
@@ -197,7 +198,14 @@ static void get_splats(const struct sr_store_in *in, struct sr_film *film, uint3
     uint64_t size = (uint64_t)film->width * film->height * sr_film_splats_B(groups);
     const struct splats_head *head = get(in, "splats", sizeof *head, error);
     const void *words = get(in, "splat words", size, error);
-    if (!head || !words || sr_film_add_splats(film, groups, error) != SR_OK)
+    if (!head || !words)
+        return;
+    int exponent;
+    if (!(frexp(head->unit, &exponent) == 0.5)) {
+        sr_fail(error, SR_ERROR_INPUT, "the unit of its splats is %g: a power of two was expected", head->unit);
+        return;
+    }
+    if (sr_film_add_splats(film, groups, head->unit, error) != SR_OK)
         return;
     memcpy(film->splats->paths, head->paths, sizeof head->paths);
     film->splats->dropped = head->dropped;

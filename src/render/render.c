@@ -29,6 +29,23 @@ static bool has_splats(const struct sr_render_job *job)
     return job->integrator.model->splats && job->sensor.model->connect && !job->film.buckets;
 }
 
+/* The unit of splats: 2^-46 or so of the picture's values if all that the lights emit went evenly through the scene's
+ * bounds, so that lights twice as bright make sums of the same bits; up to 2^49 of those values there is room. */
+static double splat_unit(const struct sr_render_job *job)
+{
+    struct sr_box box = sr_scene_bounds(job->scene);
+    double diagonal = (double)sr_length(sr_sub(box.hi, box.lo));
+    double ratio = (double)job->film.exposure_time * (double)job->film.iso / 100;
+    double value = sr_lights_emitted(sr_scene_lights(job->scene)) / (diagonal * diagonal) * ratio;
+    return value > 0x1p-900 && value < 0x1p900 ? ldexp(1, ilogb(value) - 46) : 0x1p-56;
+}
+
+static sr_status add_splats(const struct sr_render_job *job, struct sr_film *film, uint32_t blocks,
+                            struct sr_error *error)
+{
+    return has_splats(job) ? sr_film_add_splats(film, blocks, splat_unit(job), error) : SR_OK;
+}
+
 /* What cannot be rendered. */
 static sr_status check(const struct sr_render_job *job, struct sr_error *error)
 {
@@ -94,7 +111,7 @@ sr_status sr_render(const struct sr_render_job *wanted, struct sr_film **film, s
     struct sr_keeper keeper = {.keep = job->keep, .films = {*film}, .film_count = 1};
     pass.film = *film;
     pass.keeper = &keeper;
-    sr_status status = has_splats(job) ? sr_film_add_splats(*film, pass.blocks, error) : SR_OK;
+    sr_status status = add_splats(job, *film, pass.blocks, error);
     if (status == SR_OK)
         status = sr_keeper_resume(&keeper, report, error);
     if (status == SR_OK)
@@ -145,7 +162,7 @@ sr_status sr_render_samples(const struct sr_render_job *wanted, struct sr_render
     pass.film = sr_part_splats_film(pass.part);
     struct sr_keeper keeper = {.keep = job->keep, .films = {pass.film}, .film_count = 1, .part = pass.part};
     pass.keeper = &keeper;
-    status = has_splats(job) ? sr_film_add_splats(pass.film, pass.blocks, error) : SR_OK;
+    status = add_splats(job, pass.film, pass.blocks, error);
     if (status == SR_OK)
         status = sr_keeper_resume(&keeper, report, error);
     pass.start_s = sr_clock_s() - report->render_s;

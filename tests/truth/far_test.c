@@ -207,8 +207,7 @@ static struct sr_film *picture_of(const char *integrator, double brightness, str
     return film;
 }
 
-/* The lights times a power of two: the picture times the same, to the last bit; sums of splats, which are whole numbers
- * of 2^-56, to their rounding. */
+/* The lights times a power of two: the picture times the same, to the last bit, sums of splats too. */
 TEST(pictures_are_linear_in_the_lights)
 {
     static const char *const integrators[] = {"path", "volpath", "bdpt", "lightpath"};
@@ -216,7 +215,7 @@ TEST(pictures_are_linear_in_the_lights)
         struct sr_import_result scene, bright_scene;
         struct sr_film *film = picture_of(integrators[i], 1, &scene);
         double light = 0;
-        for (int k = film->splats ? -10 : -30; k <= 30; k += film->splats ? 10 : 30) {
+        for (int k = -30; k <= 30; k += 20) {
             struct sr_film *bright = picture_of(integrators[i], exp2(k), &bright_scene);
             for (size_t p = 0; p < 24 * 24; ++p)
                 for (int c = 0; c < 3; ++c) {
@@ -225,7 +224,7 @@ TEST(pictures_are_linear_in_the_lights)
                     light += film->pixels[p].sum[c];
                     if (film->splats) {
                         double splats = sr_film_splat_mean(film, p, c);
-                        EXPECT_NEAR(ldexp(sr_film_splat_mean(bright, p, c), -k), splats, 1e-6 * fabs(splats) + 1e-9);
+                        EXPECT_NEAR(ldexp(sr_film_splat_mean(bright, p, c), -k), splats, 0);
                         light += fabs(splats);
                     }
                 }

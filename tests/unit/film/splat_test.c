@@ -10,7 +10,8 @@ static struct sr_film *film_of(int w, int h, uint32_t groups)
     struct sr_film_settings s = {.width = w, .height = h, .x1 = w, .y1 = h};
     struct sr_error error = {0};
     struct sr_film *film;
-    EXPECT(sr_film_create(&s, false, &film, &error) == SR_OK && sr_film_add_splats(film, groups, &error) == SR_OK);
+    EXPECT(sr_film_create(&s, false, &film, &error) == SR_OK &&
+           sr_film_add_splats(film, groups, 0x1p-56, &error) == SR_OK);
     return film;
 }
 
