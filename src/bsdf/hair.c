@@ -58,6 +58,8 @@ static float power(float x, int n)
     return y;
 }
 
+static const float most_per_radius = 1e30f; // absorption [1]
+
 /* Absorption per radius for concentrations of 1, between and beyond the three wavelengths at which it is known. */
 static float melanin(float lambda, float red, float green, float blue)
 {
@@ -91,6 +93,8 @@ static void ready(void *self, const struct sr_bsdf_at *at)
             m->sigma[i] = m->eumelanin * melanin(at->lambda[i], 0.419f, 0.697f, 1.37f) +
                           m->pheomelanin * melanin(at->lambda[i], 0.187f, 0.4f, 1.05f);
     }
+    for (int i = 0; i < SR_LAMBDA_COUNT; ++i)
+        m->sigma[i] = sr_min(m->sigma[i], most_per_radius); // an edge has no width, and 0 of something infinite is none
 }
 
 static uint32_t lobes(const void *self)
@@ -209,7 +213,7 @@ static bool sample(const void *self, sr_vec3 wo, float u_lobe, sr_vec2 u, enum s
     int p = 0;
     while (p < LOBES - 1 && u_lobe >= w.share[p])
         u_lobe -= w.share[p++];
-    float rest = sr_clamp(u_lobe / w.share[p], 0, 1);
+    float rest = sr_min(sr_max(u_lobe / w.share[p], 0), 1);
     float c = sr_max(1 + m->v[p] * logf(u.x + (1 - u.x) * expf(-2 / m->v[p])), -1), sine, cosine;
     sin_cos_turn(rest, &sine, &cosine);
     float si = sr_clamp(-c * w.sine[p] + sr_safe_sqrt((1 - c) * (1 + c)) * cosine * w.cosine[p], -1, 1);

@@ -73,7 +73,8 @@ enum sr_flight sr_fly(const struct sr_medium *medium, const struct sr_ray *ray, 
     model->begin(medium->self, ray->o, ray->d, length, w, &walk);
     while (model->next(medium->self, &walk, &s)) {
         float first = s.majorant[0];
-        for (*t = s.t0;;) {
+        *t = s.t0;
+        for (int nulls = 0;; ++nulls) {
             float rest = s.t1 - *t;
             if (*depth >= first * rest) {
                 sr_spectrum P = sr_spectrum_exp((first - s.majorant) * rest);
@@ -102,6 +103,8 @@ enum sr_flight sr_fly(const struct sr_medium *medium, const struct sr_ray *ray, 
             c->f *= sr_spectrum_select(null > 0.0f, null, SR_BLACK) * P;
             c->q *= sr_spectrum_select(s.majorant > real, s.majorant - real, SR_BLACK) * P;
             c->r *= s.majorant * P;
+            if (SR_UNLIKELY(nulls >= SR_MOST_NULLS))
+                c->L = c->f = SR_BLACK + NAN;
             if (!is_any(c->f))
                 return SR_FLIGHT_LOST;
             *depth = -log1pf(-sr_rng_float(rng));
@@ -128,8 +131,8 @@ bool sr_pass(const struct sr_medium *medium, sr_vec3 o, sr_vec3 d, float length,
     float depth = -log1pf(-sr_rng_float(rng));
     model->begin(medium->self, o, d, length, w, &walk);
     while (model->next(medium->self, &walk, &s)) {
-        float first = s.majorant[0];
-        for (float t = s.t0;;) {
+        float first = s.majorant[0], t = s.t0;
+        for (int nulls = 0;; ++nulls) {
             float rest = s.t1 - t;
             bool is_through = depth >= first * rest;
             float step = is_through ? rest : depth / first;
@@ -149,6 +152,10 @@ bool sr_pass(const struct sr_medium *medium, sr_vec3 o, sr_vec3 d, float length,
             p->T *= null * P;
             p->S *= s.majorant * P;
             p->U *= (is_any(at.sigma_s) ? null : s.majorant) * P;
+            if (SR_UNLIKELY(nulls >= SR_MOST_NULLS)) {
+                p->T = SR_BLACK + NAN;
+                return true;
+            }
             // what is almost nothing ends by lot, the same for whichever wavelength is the first
             float left = sr_spectrum_max(p->T) / sr_spectrum_mean(p->S);
             if (left < 0.05f) {

@@ -27,6 +27,9 @@ static inline sr_spectrum sr_carried_to(const struct sr_carried *c, sr_spectrum 
     return c->f * L * (1 / sr_spectrum_mean(c->q + c->r * light_density));
 }
 
+/* In a segment: where a majorant is far above what is there, steps may be shorter than floats can tell, and never end.
+ * The sample is given up then, as one that is no number: told and counted. */
+enum { SR_MOST_NULLS = 1 << 18 };
 enum sr_flight { SR_FLIGHT_THROUGH, SR_FLIGHT_SCATTERED, SR_FLIGHT_LOST };
 
 /* Along the ray, t = 0 … length. depth: optical depth that the first wavelength may still go; what is gone through is

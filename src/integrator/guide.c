@@ -64,7 +64,7 @@ struct sr_guide_place sr_guide_place(const struct sr_guide *g, sr_vec3 p, sr_vec
                   (n.x + 1) * of_normal, (n.y + 1) * of_normal, (n.z + 1) * of_normal};
     struct sr_guide_place place;
     for (int i = 0; i < 6; ++i)
-        place.of[i] = (uint32_t)sr_clamp(x[i], 0, last);
+        place.of[i] = (uint32_t)sr_min(sr_max(x[i], 0), last); // 0 where the scene is wider than floats
     return place;
 }
 

@@ -180,10 +180,19 @@ static uint32_t hash_cell(int32_t x, int32_t y, int32_t z)
     return h ^ h >> 15;
 }
 
+/* Far away for its radius numbers of cells are folded, for they must fit an int; floats there are whole numbers. */
+static int32_t number_of(float x)
+{
+    const float most = 0x1p30f;
+    if (!(fabsf(x) < most))
+        x = isfinite(x) ? fmodf(x, most) : 0;
+    return (int32_t)floorf(x);
+}
+
 static uint32_t cell_of(const struct sr_photon_map *map, sr_vec3 p)
 {
     float side = 2 * map->radius;
-    return hash_cell((int32_t)floorf(p.x / side), (int32_t)floorf(p.y / side), (int32_t)floorf(p.z / side)) & map->mask;
+    return hash_cell(number_of(p.x / side), number_of(p.y / side), number_of(p.z / side)) & map->mask;
 }
 
 /* Counting sort of the chunks' photons, in the order of chunks. */
@@ -230,7 +239,7 @@ void sr_photons_near(const struct sr_photon_map *map, sr_vec3 p, void (*f)(void 
 {
     float side = 2 * map->radius, r2 = map->radius * map->radius;
     sr_vec3 corner = {p.x / side - 0.5f, p.y / side - 0.5f, p.z / side - 0.5f};
-    int32_t x = (int32_t)floorf(corner.x), y = (int32_t)floorf(corner.y), z = (int32_t)floorf(corner.z);
+    int32_t x = number_of(corner.x), y = number_of(corner.y), z = number_of(corner.z);
     uint32_t visited[8];
     int n = 0;
     for (int i = 0; i < 8; ++i) {

@@ -6,7 +6,7 @@
  *
  * No light is sampled, nothing is weighed, no closed form is used: what it finds, volpath must find (Pharr, Jakob &
  * Humphreys 2023, 14.2.1, which knows no surfaces; here they scatter by their BSDFs). */
-#include "integrator/integrator.h"
+#include "integrator/flight.h"
 
 enum { GROUPS = 2, MOST_PASSED = 1000 };
 
@@ -20,7 +20,7 @@ static const struct sr_param params[] = {
     {.name = NULL},
 };
 
-enum event { THROUGH, ABSORBED, SCATTERED };
+enum event { THROUGH, ABSORBED, SCATTERED, GIVEN_UP };
 
 static enum event collide(const struct sr_medium *medium, const struct sr_ray *ray, float length,
                           const struct sr_wavelengths *w, struct sr_rng *rng, float *t, struct sr_medium_at *at)
@@ -29,7 +29,8 @@ static enum event collide(const struct sr_medium *medium, const struct sr_ray *r
     struct sr_medium_segment s;
     medium->model->begin(medium->self, ray->o, ray->d, length, w, &walk);
     while (medium->model->next(medium->self, &walk, &s)) {
-        for (*t = s.t0;;) {
+        *t = s.t0;
+        for (int nulls = 0;; ++nulls) {
             *t -= log1pf(-sr_rng_float(rng)) / s.majorant[0];
             if (!(*t < s.t1))
                 break;
@@ -39,6 +40,8 @@ static enum event collide(const struct sr_medium *medium, const struct sr_ray *r
                 return ABSORBED;
             if (u < at->sigma_a[0] + at->sigma_s[0])
                 return SCATTERED;
+            if (nulls >= SR_MOST_NULLS)
+                return GIVEN_UP;
         }
     }
     return THROUGH;
@@ -64,6 +67,8 @@ static sr_spectrum simple_volpath_L(const void *self, const struct sr_scene *sce
         enum event event = medium ? collide(medium, &ray, is_hit ? x.t : INFINITY, w, &rng, &t, &at) : THROUGH;
         if (event == ABSORBED)
             return L + beta * at.Le;
+        if (event == GIVEN_UP)
+            return SR_BLACK + NAN;
         if (event == SCATTERED) {
             if (bounce++ == max_depth)
                 return L;

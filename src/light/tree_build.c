@@ -99,8 +99,8 @@ static float cost_of(const struct part *a)
 
 static int bin_of(float x, float lo, float scale)
 {
-    int i = (int)((x - lo) * scale);
-    return i < 0 ? 0 : i < BINS ? i : BINS - 1;
+    float i = (x - lo) * scale; // none at all where the range is wider than floats
+    return i > 0 ? (int)sr_min(i, BINS - 1) : 0;
 }
 
 // a place to divide the range, both sides non-empty; reorders the range
@@ -243,7 +243,8 @@ static void store(const struct build *b, struct sr_light_tree_node *node, int sl
     v4 at = centre_of(child) - (v4){node->origin.x, node->origin.y, node->origin.z, 0};
     double off2 = 0, dot = 0, length2 = 0;
     for (int a = 0; a < 3; ++a) {
-        node->along[a][slot].centre = (uint16_t)(node->step > 0 ? sr_clamp(at[a] / node->step + 0.5f, 0, 65535) : 0);
+        node->along[a][slot].centre =
+            (uint16_t)(node->step > 0 ? sr_min(sr_max(at[a] / node->step + 0.5f, 0), 65535) : 0);
         node->along[a][slot].axis = (int16_t)lrintf(child->sum[a] * 32767);
         double off = (double)node->along[a][slot].centre * (double)node->step - (double)at[a],
                q = node->along[a][slot].axis;

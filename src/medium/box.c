@@ -82,7 +82,7 @@ void sr_medium_box_begin(const struct sr_medium_box *box, sr_vec3 o, sr_vec3 d, 
     if (!(t0 < t1))
         return;
     for (int k = 0; k < 3; ++k) {
-        float place = sr_clamp(from[k] + t0 * speed[k], 0, (float)(box->cells[k] - 1));
+        float place = sr_min(sr_max(from[k] + t0 * speed[k], 0), (float)(box->cells[k] - 1));
         walk->cell[k] = (int32_t)place;
         walk->way[k] = speed[k] > 0 ? 1 : speed[k] < 0 ? -1 : 0;
         walk->next[k] =

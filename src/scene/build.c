@@ -76,7 +76,7 @@ static void user_occluded(const struct RTCOccludedFunctionNArguments *a)
 }
 
 /* ---- instances that move: their place is asked for anew by each ray, so that what it meets is exactly where it is
- * then ---- */
+ * then; and those of which Embree's floats know no inverse ---- */
 
 enum { MOVING_STEPS = 65 };
 
@@ -104,12 +104,12 @@ static void moving_bounds(const struct RTCBoundsFunctionArguments *a)
 }
 
 /* Embree has boxes go evenly from one step to the next: each holds what its two neighbouring intervals do. */
-static void set_boxes(struct instance *instance)
+static void set_boxes(struct instance *instance, int steps)
 {
     struct RTCBounds e;
     rtcGetSceneBounds(instance->object->embree, &e);
     struct sr_box own = {{e.lower_x, e.lower_y, e.lower_z}, {e.upper_x, e.upper_y, e.upper_z}};
-    for (int i = 0; i < MOVING_STEPS; ++i) {
+    for (int i = 0; i < steps; ++i) {
         float t0 = (float)(i > 0 ? i - 1 : 0) / (MOVING_STEPS - 1),
               t1 = (float)(i + 1 < MOVING_STEPS ? i + 1 : i) / (MOVING_STEPS - 1);
         struct sr_box b = instance->inner ? sr_motion_box(instance->inner, own, t0, t1) : own;
@@ -149,7 +149,8 @@ static void moving_intersect(const struct RTCIntersectFunctionNArguments *a)
     const struct instance *instance = a->geometryUserPtr;
     struct RTCRayHit *rh = (struct RTCRayHit *)a->rayhit;
     struct saved_ray saved = enter(instance, &rh->ray, a->context, a->geomID);
-    rtcIntersect1(instance->object->embree, a->context, rh);
+    if (scene_can_cast(&rh->ray, SR_CAST_LARGEST))
+        rtcIntersect1(instance->object->embree, a->context, rh);
     leave(&rh->ray, a->context, saved);
 }
 
@@ -160,7 +161,8 @@ static void moving_occluded(const struct RTCOccludedFunctionNArguments *a)
     const struct instance *instance = a->geometryUserPtr;
     struct RTCRay *r = (struct RTCRay *)a->ray;
     struct saved_ray saved = enter(instance, r, a->context, a->geomID);
-    rtcOccluded1(instance->object->embree, a->context, r);
+    if (scene_can_cast(r, SR_CAST_LARGEST))
+        rtcOccluded1(instance->object->embree, a->context, r);
     leave(r, a->context, saved);
 }
 
@@ -329,19 +331,44 @@ static void build_object(struct sr_scene *scene, struct object *object)
 
 static RTCGeometry make_moving(struct sr_scene *scene, struct instance *instance)
 {
-    instance->boxes = sr_arena_alloc(&scene->arena, MOVING_STEPS * sizeof *instance->boxes);
+    int steps = instance->outer || instance->inner ? MOVING_STEPS : 1;
+    instance->boxes = sr_arena_alloc(&scene->arena, (size_t)steps * sizeof *instance->boxes);
     if (!instance->boxes)
         return NULL;
-    set_boxes(instance);
+    set_boxes(instance, steps);
     scene->moves |= (instance->outer && instance->outer->moves) || (instance->inner && instance->inner->moves);
     RTCGeometry g = rtcNewGeometry(scene->device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(g, 1);
-    rtcSetGeometryTimeStepCount(g, MOVING_STEPS);
+    rtcSetGeometryTimeStepCount(g, (unsigned)steps);
     rtcSetGeometryBoundsFunction(g, moving_bounds, NULL);
     rtcSetGeometryIntersectFunction(g, moving_intersect);
     rtcSetGeometryOccludedFunction(g, moving_occluded);
     rtcSetGeometryUserData(g, instance);
     return g;
+}
+
+/* How much longer vectors may become on their way into the object, and how far away its origin is from there. Embree
+ * inverts the matrix in float, whose cubes overflow or vanish beyond the bounds: such instances do as those that move.
+ */
+static bool can_stand(struct sr_scene *scene, const struct instance *instance)
+{
+    const struct sr_transform *t = &instance->object_to_world;
+    double stretch = 0, shift = 0, grown = 0;
+    for (int i = 0; i < 3; ++i) {
+        double there = 0, back = 0;
+        for (int k = 0; k < 3; ++k) {
+            there += fabs((double)t->m[i][k]);
+            back += fabs((double)t->inverse[i][k]);
+        }
+        grown = fmax(grown, there);
+        stretch = fmax(stretch, back);
+        shift = fmax(shift, fabs((double)t->inverse[i][3]));
+    }
+    const double most = 2e6, half = 0.49 * (double)SR_CAST_LARGEST;
+    if (!(grown < most && stretch < most && shift < half))
+        return false;
+    scene->farthest = sr_min(scene->farthest, (float)(half / stretch));
+    return true;
 }
 
 static RTCGeometry make_standing(struct sr_scene *scene, const struct instance *instance)
@@ -373,8 +400,8 @@ static void add_instances(struct sr_scene *scene, struct object *world)
                                          .object = object,
                                          .outer = defs[i].outer,
                                          .inner = defs[i].inner};
-        RTCGeometry g = instances[i].outer || instances[i].inner ? make_moving(scene, &instances[i])
-                                                                 : make_standing(scene, &instances[i]);
+        bool moves = instances[i].outer || instances[i].inner || !can_stand(scene, &instances[i]);
+        RTCGeometry g = moves ? make_moving(scene, &instances[i]) : make_standing(scene, &instances[i]);
         if (!g) {
             sr_fail(&scene->error, SR_ERROR_RESOURCE, "not enough memory for %zu instances", n);
             return;
@@ -403,6 +430,7 @@ void scene_build_embree(struct sr_scene *scene, int threads)
     }
     rtcSetDeviceErrorFunction(scene->device, embree_error, scene);
     rtcSetDeviceMemoryMonitorFunction(scene->device, count_memory, scene);
+    scene->farthest = SR_CAST_LARGEST;
     struct object **objects = scene->objects.data;
     for (size_t k = 1; k <= scene->objects.count;
          ++k) { // objects before the world that holds them, and before those that are like them

@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const float LARGEST = 1.844e18f; // [m]
+static const float LARGEST = SR_CAST_LARGEST; // [m]
 enum { TOLD = 10 };
 
 static bool is_large(sr_vec3 p)

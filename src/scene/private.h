@@ -39,8 +39,8 @@ struct instance {
     struct sr_transform object_to_world; // where it stands
     const struct object *object;
     const struct sr_motion *outer, *inner; // NULL, NULL: it stands; else outer after inner, either may be NULL
-    struct sr_box *boxes;                  // of a moving one, at its time steps
-    bool is_watched;                       // some of it is among the scene's `closed`
+    struct sr_box *boxes; // of one that moves, or is far larger or smaller than its object, at its time steps
+    bool is_watched;      // some of it is among the scene's `closed`
 };
 /* Of a moving instance. */
 struct sr_transform instance_transform(const struct instance *instance, float time);
@@ -70,6 +70,7 @@ struct sr_scene {
     const struct object *world;
     struct instance *instances; // by geometry number - world's shape count
     uint32_t first_instance;
+    float farthest; // [m] coordinate of rays that can be cast
     RTCDevice device;
     RTCScene embree;
     struct sr_lights lights;
@@ -111,6 +112,8 @@ sr_vec3 scene_beside(sr_vec3 d, int attempt);
 /* Of its way a segment is asked again: beside its end there may be the lamp that it aims at. One that meets the lamp at
  * a cosine of 2^-16 / (1 - share) or more stays clear of it. */
 #define SLIP_SHARE (1 - 0x1p-6f)
+#define SR_CAST_LARGEST 1.844e18f // [m] coordinate that Embree takes
+bool scene_can_cast(const struct RTCRay *r, float farthest);
 void scene_build_embree(struct sr_scene *scene, int threads);
 
 /* Which primitive of the shape the ray caster means; on paired triangles *at is put right. */

@@ -3,9 +3,23 @@
  */
 #include "scene/private.h"
 
+#include <string.h>
+
+typedef float f4 __attribute__((vector_size(16)));
+
+/* Embree ends the program at numbers beyond its own largest, and at what is no number. Such rays meet nothing. */
+bool scene_can_cast(const struct RTCRay *r, float farthest)
+{
+    f4 o = *(const f4 *)&r->org_x, d = *(const f4 *)&r->dir_x, most = {farthest, farthest, farthest, farthest};
+    typedef int32_t i4 __attribute__((vector_size(16)));
+    i4 within = (o <= most) & (o >= -most) & (d <= most) & (d >= -most);
+    uint64_t halves[2];
+    memcpy(halves, &within, sizeof halves);
+    return (halves[0] & halves[1]) == UINT64_MAX && !isnan(r->tfar);
+}
+
 static void fill_ray(struct RTCRay *r, sr_vec3 o, sr_vec3 d, float time, float t_max)
 {
-    typedef float f4 __attribute__((vector_size(16)));
     // a plane through a coordinate's zero has no rounding error there, so that rays start on it exactly: 0 is no
     // meeting
     const float nearest = 1e-20f;                    // [m]
@@ -61,6 +75,8 @@ static bool is_free(const struct sr_scene *scene, const struct sr_ray *ray, sr_v
     fill_ray(&r, ray->o, d, ray->time, t_max);
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
+    if (SR_UNLIKELY(!scene_can_cast(&r, scene->farthest)))
+        return true;
     rtcOccluded1(scene->embree, &context, &r);
     return r.tfar >= 0;
 }
@@ -73,6 +89,8 @@ SR_INLINE bool raycast(const struct sr_scene *scene, const struct sr_ray *ray, b
     rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     struct RTCIntersectContext context;
     rtcInitIntersectContext(&context);
+    if (SR_UNLIKELY(!scene_can_cast(&rh.ray, scene->farthest)))
+        return false;
     rtcIntersect1(scene->embree, &context, &rh);
     if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID &&
         !(scene->closed_count && scene_may_have_slipped(scene, ray) && cast_beside(scene, ray, &rh)))

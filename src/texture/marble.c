@@ -32,7 +32,8 @@ static const struct sr_rgb colours[CURVES + 3] = {
 
 static struct sr_rgb colour_at(float t)
 {
-    int k = (int)sr_clamp(t * CURVES, 0, CURVES - 1);
+    t = sr_max(t, 0); // the sine of what has overflowed is none, and counts as 0
+    int k = (int)sr_min(t * CURVES, CURVES - 1);
     float u = t * CURVES - (float)k, v = 1 - u;
     const float weight[4] = {v * v * v, 3 * v * v * u, 3 * v * u * u, u * u * u};
     struct sr_rgb sum = {0};
