@@ -113,6 +113,7 @@ void sr_parallel_for(int threads, uint64_t count, void (*work)(void *context, ui
 /* ---- clock ---- */
 
 double sr_clock_s(void);         // monotonic [s]
+double sr_cpu_s(void);           // of the processors, taken by all threads of this process so far [s]
 uint64_t sr_peak_memory_B(void); // largest resident set of this process so far [B]
 
 /* ---- parameters: what a model has, standing once, read by importer, laboratory, docs and tests ---- */

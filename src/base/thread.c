@@ -101,11 +101,21 @@ void sr_parallel_for(int threads, uint64_t count, void (*work)(void *context, ui
     sr_parallel(threads, take, &c);
 }
 
-double sr_clock_s(void)
+static double read_clock_s(clockid_t clock)
 {
     struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(clock, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+double sr_clock_s(void)
+{
+    return read_clock_s(CLOCK_MONOTONIC);
+}
+
+double sr_cpu_s(void)
+{
+    return read_clock_s(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 uint64_t sr_peak_memory_B(void)

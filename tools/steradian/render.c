@@ -227,7 +227,9 @@ static int render_scene(const struct render_arguments *a, const struct sr_import
             render_catch_interrupts();
         struct sr_film *film;
         struct sr_render_report report;
+        double before_s = sr_cpu_s();
         sr_render(&job, &film, &report, &error);
+        r.cpu_s = sr_cpu_s() - before_s;
         if (r.on_terminal)
             fputs("\r\033[K", stderr);
         code = film && is_helper() ? 0 : film ? finish(&r, &keeping, film, &report) : command_fail("render", &error);

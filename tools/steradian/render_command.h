@@ -39,6 +39,7 @@ struct rendering {
     struct sr_render_range range;           // of a part
     const struct sr_render_keep *keep;      // NULL: none
     double last_partial_s, last_progress_s; // [s]
+    double cpu_s;                           // of the processors, for rendering, in this run alone [s]
     bool on_terminal;                       // a bar is drawn there
 };
 

@@ -130,11 +130,11 @@ int render_print_json(const struct rendering *r, const struct sr_film *film, con
     for (int i = 0; i < render_output_count(r->arguments); ++i)
         json_array_append_new(outputs, command_json_text(render_output_name(r->arguments, r->scene, i)));
     json_t *j = json_pack(
-        "{s:s, s:s, s:o, s:b, s:o, s:o, s:{s:f, s:f, s:f, s:f, s:f, s:I}, s:{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, "
+        "{s:s, s:s, s:o, s:b, s:o, s:o, s:{s:f, s:f, s:f, s:f, s:f, s:f, s:I}, s:{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, "
         "s:I, s:I, s:I, s:I, s:I, s:I, s:I}, s:o, s:o}",
         "version", SR_VERSION, "scene_hash", hash, "outputs", outputs, "complete", report->is_complete, "settings",
         settings_json(r, film), "mean_luminance", command_json_measured(&L), "time", "read_s", r->scene->read_s,
-        "build_s", counts.build_s, "render_s", report->render_s, "paths_per_s",
+        "build_s", counts.build_s, "render_s", report->render_s, "render_cpu_s", r->cpu_s, "paths_per_s",
         rate((double)report->paths, report->render_s), "rays_per_s",
         rate((double)(report->rays + report->shadow_rays), report->render_s), "peak_memory_B",
         (json_int_t)sr_peak_memory_B(), "counts", "triangles", (json_int_t)counts.triangles, "patches",
