@@ -5,10 +5,12 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -21,16 +23,37 @@ static char *grow(char *old, size_t used, size_t size)
     return grown;
 }
 
-/* All bytes of a descriptor, of known size or not. */
-static sr_status read_all(int fd, const char *path, size_t expected, size_t max_size, char **data, size_t *size,
-                          struct sr_error *error)
+/* Whether someone may still come and write to a pipe that has given nothing; naps a little if so. */
+static bool may_be_written(int fd, int *naps)
 {
+    struct pollfd at = {.fd = fd, .events = POLLIN};
+    if (poll(&at, 1, 0) > 0 && at.revents & POLLHUP) // it was written to, and is over
+        return false;
+    nanosleep(&(struct timespec){.tv_nsec = 20000000}, NULL);
+    ++*naps;
+    return true;
+}
+
+/* All bytes of a descriptor, of known size or not. */
+static sr_status read_all(int fd, const char *path, size_t expected, bool is_pipe, size_t max_size, char **data,
+                          size_t *size, struct sr_error *error)
+{
+    enum { MOST_NAPS = 500 }; // 10 s
+    int naps = 0;
     size_t capacity = expected ? expected : 1 << 16, n = 0;
     char *bytes = sr_alloc(capacity + 1);
     while (bytes) {
         ssize_t got = read(fd, bytes + n, capacity - n);
         if (got < 0 && errno == EINTR)
             continue;
+        if (got < 0 && errno == EAGAIN && fcntl(fd, F_SETFL, O_RDONLY) == 0) // somebody writes: it takes what it takes
+            continue;
+        if (got == 0 && n == 0 && is_pipe && naps < MOST_NAPS && may_be_written(fd, &naps))
+            continue;
+        if (got == 0 && n == 0 && naps == MOST_NAPS) {
+            sr_free(bytes);
+            return sr_fail(error, SR_ERROR_INPUT, "%s: is a pipe that nobody writes to", path);
+        }
         if (got < 0) {
             sr_free(bytes);
             return sr_fail(error, SR_ERROR_INPUT, "%s: cannot be read: %s", path, strerror(errno));
@@ -113,12 +136,20 @@ static sr_status gunzip(const char *path, size_t max_size, char **data, size_t *
     return SR_OK;
 }
 
+/* What has no size may have no end either: no more than a quarter of the machine's memory. */
+static size_t most_without_size(size_t max_size)
+{
+    long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
+    size_t quarter = pages > 0 && page > 0 ? (size_t)pages / 4 * (size_t)page : (size_t)1 << 30;
+    return max_size < quarter ? max_size : quarter;
+}
+
 sr_status sr_file_read(const char *path, size_t max_size, char **data, size_t *size, struct sr_error *error)
 {
     *data = NULL;
     *size = 0;
     bool is_stdin = strcmp(path, "-") == 0;
-    int fd = is_stdin ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC);
+    int fd = is_stdin ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (fd < 0)
         return sr_fail(error, SR_ERROR_INPUT, "%s: cannot be opened: %s", path, strerror(errno));
     struct stat st;
@@ -127,11 +158,15 @@ sr_status sr_file_read(const char *path, size_t max_size, char **data, size_t *s
         status = sr_fail(error, SR_ERROR_INPUT, "%s: cannot be read: %s", path, strerror(errno));
     else if (S_ISDIR(st.st_mode))
         status = sr_fail(error, SR_ERROR_INPUT, "%s: is a folder, a file was expected", path);
+    else if (S_ISBLK(st.st_mode) || (S_ISCHR(st.st_mode) && !is_stdin && !isatty(fd)))
+        status = sr_fail(error, SR_ERROR_INPUT, "%s: is a device, a file was expected", path);
     else if (S_ISREG(st.st_mode) && (uint64_t)st.st_size > max_size)
         status = sr_fail(error, SR_ERROR_INPUT, "%s: is larger than %zu bytes, the limit for this kind of file", path,
                          max_size);
     else
-        status = read_all(fd, path, S_ISREG(st.st_mode) ? (size_t)st.st_size : 0, max_size, data, size, error);
+        status = S_ISREG(st.st_mode) ? read_all(fd, path, (size_t)st.st_size, false, max_size, data, size, error)
+                                     : read_all(fd, path, 0, S_ISFIFO(st.st_mode) && !is_stdin,
+                                                most_without_size(max_size), data, size, error);
     if (!is_stdin)
         close(fd);
     if (status == SR_OK && *size > 2 && (*data)[0] == '\x1f' && (*data)[1] == '\x8b') {

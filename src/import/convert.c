@@ -65,11 +65,14 @@ const char *sr_convert_mesh_name(struct sr_arena *arena, const char *out, uint32
 }
 
 /* What does not read back is not worth writing. */
-static sr_status read_back(const char *path, const struct sr_print *out, struct sr_error *error)
+static sr_status read_back(const char *from, const char *path, const struct sr_print *out, struct sr_error *error)
 {
     struct sr_arena data = {0};
+    struct sr_error refused = {0};
     struct sr_pbrt_description d = {0};
-    sr_status status = sr_pbrt_read_text(path, out->text ? out->text : "", out->size, &data, NULL, &d, error);
+    sr_status status = sr_pbrt_read_text(path, out->text ? out->text : "", out->size, &data, NULL, &d, &refused);
+    if (status != SR_OK)
+        sr_fail(error, status, "%s: makes a text that would be refused: %s", from, refused.text);
     sr_pbrt_description_free(&d);
     sr_arena_free(&data);
     return status;
@@ -84,7 +87,7 @@ sr_status sr_convert(const char *path, const struct sr_convert_options *o, char 
     if (status == SR_OK && out.has_failed)
         status = sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", path);
     if (status == SR_OK)
-        status = read_back(o->out, &out, error);
+        status = read_back(path, o->out, &out, error);
     if (status != SR_OK) {
         sr_free(out.text);
         out = (struct sr_print){0};

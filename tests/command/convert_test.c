@@ -407,3 +407,10 @@ TEST(convert_gltf_models_to_what_pbrt_knows)
         run_expecting(0, "render model.pbrt --spp 1 --resolution 16,12 -o a.pfm --quiet");
     }
 }
+
+TEST(convert_names_the_file_whose_text_would_be_refused)
+{
+    put_file("huge.pbrt", "Camera \"perspective\"\nWorldBegin\nShape \"sphere\" \"float radius\" 1e999\n");
+    const struct said *s = run_expecting(3, "convert huge.pbrt -o out.pbrt");
+    EXPECT_SAYS(s->err, "error: huge.pbrt: makes a text that would be refused: out.pbrt:3:31: inf");
+}

@@ -2,6 +2,7 @@
 /* steradian converge: how the error of estimators falls with samples and with time. */
 #include "converge.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -132,7 +133,14 @@ static bool take(struct converge_arguments *a, int option, const char *name, con
     case OPT_REFERENCE:
         return command_parse_float(c, name, text, -1e30, 1e30, &a->reference);
     case OPT_RESOLUTION:
-        return command_parse_floats(c, name, text, 2, a->resolution);
+        if (!command_parse_floats(c, name, text, 2, a->resolution))
+            return false;
+        for (int i = 0; i < 2; ++i)
+            if (!(a->resolution[i] >= 1 && a->resolution[i] <= 4096 && a->resolution[i] == floor(a->resolution[i]))) {
+                command_usage(c, "--resolution %s: W,H in whole pixels from 1 to 4096 was expected", text);
+                return false;
+            }
+        return true;
     case OPT_INTEGRAL:
         a->integral = text;
         return true;

@@ -32,7 +32,7 @@ static sr_status open_scene(const struct converge_arguments *a, uint32_t width, 
 static sr_status open_small(const struct converge_arguments *a, uint32_t width, struct sr_import_result *scene,
                             struct sr_error *error)
 {
-    if (a->resolution[0] >= 1 && a->resolution[1] >= 1 && a->resolution[0] <= 4096 && a->resolution[1] <= 4096)
+    if (a->resolution[0] >= 1)
         return open_scene(a, (uint32_t)a->resolution[0], (uint32_t)a->resolution[1], scene, error);
     if (open_scene(a, 0, 0, scene, error) != SR_OK)
         return error->status;

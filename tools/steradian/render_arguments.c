@@ -275,5 +275,9 @@ int render_parse(int argc, char **argv, struct render_arguments *a)
     if (a->has_sample && !a->has_pixel)
         return command_usage(&command_render, "--sample needs --pixel: which pixel's sample?");
     a->scene = argv[optind];
+    bool is_gltf = sr_path_has_ending(a->scene, ".gltf") || sr_path_has_ending(a->scene, ".glb");
+    if ((a->import.camera || a->import.variant) && !is_gltf)
+        return command_usage(&command_render, "--%s is for scenes in glTF: \"%s\" is none",
+                             a->import.camera ? "camera" : "variant", a->scene);
     return a->has_range ? render_check_part(a) : 0;
 }

@@ -4,6 +4,7 @@
 
 #include <stdatomic.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -194,6 +195,31 @@ TEST(failed_reads_and_writes_say_why_and_leave_nothing)
     char beside[600];
     snprintf(beside, sizeof beside, "%s.part-%ld", path, (long)getpid());
     EXPECT(!sr_file_exists(beside));
+    unlink(path);
+}
+
+TEST(devices_are_refused_and_pipes_are_waited_for)
+{
+    struct sr_error device = {0}, error = {0};
+    char *data;
+    size_t size;
+    EXPECT_EQUAL_INT(sr_file_read("/dev/zero", SIZE_MAX / 2, &data, &size, &device), SR_ERROR_INPUT);
+    EXPECT(strstr(device.text, "is a device"));
+
+    const char *path = in_folder("pipe");
+    EXPECT(mkfifo(path, 0600) == 0);
+    pid_t writer = fork();
+    if (writer == 0) { // comes late, and takes its time
+        usleep(100000);
+        FILE *pipe = fopen(path, "w");
+        usleep(100000);
+        _exit(pipe && fputs("late", pipe) >= 0 && fclose(pipe) == 0 ? 0 : 1);
+    }
+    EXPECT_EQUAL_INT(sr_file_read(path, 100, &data, &size, &error), SR_OK);
+    EXPECT(size == 4 && memcmp(data, "late", 4) == 0);
+    sr_free(data);
+    int status;
+    EXPECT(waitpid(writer, &status, 0) == writer && status == 0);
     unlink(path);
 }
 
