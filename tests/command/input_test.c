@@ -2,6 +2,7 @@
 /* Files that are wrong: an exit code, a sentence with file:line:column, and nothing left behind. */
 #include "run.h"
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -171,5 +172,27 @@ TEST(info_tells_what_it_understands)
     EXPECT_SAYS(run_expecting(3, "info broken.exr")->err, "broken.exr");
     EXPECT_SAYS(run_expecting(3, "compare broken.exr broken.exr")->err, "broken.exr");
     EXPECT_SAYS(run_expecting(3, "image broken.exr -o left.png")->err, "broken.exr");
+    expect_nothing_left();
+}
+
+/* What stands where a page or a checkpoint is to go is overwritten only if it is one. */
+TEST(output_spares_devices_and_foreign_files)
+{
+    char path[600];
+    struct stat st;
+    snprintf(path, sizeof path, "%s/pipe", test_folder());
+    EXPECT(mkfifo(path, 0600) == 0);
+    int reader = open(path, O_RDONLY | O_NONBLOCK); // or the writer would wait
+    char words[1400];
+    snprintf(words, sizeof words,
+             "validate " SR_TEST_SOURCE_DIR "/validation/cases.tsv --case B8 --samples 256 --markdown %s", path);
+    EXPECT_SAYS(run_expecting(0, words)->out, "1 of 1 cases pass");
+    EXPECT(stat(path, &st) == 0 && S_ISFIFO(st.st_mode));
+    close(reader);
+    unlink(path);
+
+    put_file("notes.txt", "words\n");
+    EXPECT_SAYS(run_expecting(3, "render " CORNELL " --spp 1 -o ok.pfm --checkpoint notes.txt")->err, "no checkpoint");
+    EXPECT_SAYS(run_expecting(3, "info notes.txt")->err, "notes.txt");
     expect_nothing_left();
 }

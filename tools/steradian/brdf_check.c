@@ -152,13 +152,11 @@ static void markdown_head(FILE *out, const struct sr_certificate_options *o)
 static int check_all(const struct arguments *a)
 {
     struct sr_error error = {0};
-    FILE *document = a->markdown ? fopen(a->markdown, "w") : NULL;
-    if (a->markdown && !document) {
-        sr_fail(&error, SR_ERROR_RESOURCE, "%s: cannot be written", a->markdown);
+    struct command_page page;
+    if (command_page_open(a->markdown, &page, &error) != SR_OK)
         return command_fail("brdf check", &error);
-    }
-    if (document)
-        markdown_head(document, &a->options);
+    if (page.out)
+        markdown_head(page.out, &a->options);
     json_t *all = json_array();
     bool passed = true;
     for (int i = 0; sr_bsdf_models[i] && !error.status; ++i) {
@@ -179,11 +177,10 @@ static int check_all(const struct arguments *a)
             fflush(stdout);
         } else
             json_array_append_new(all, certificate_json(m->name, &c, &a->options));
-        if (document)
-            write_markdown(document, m, &c);
+        if (page.out)
+            write_markdown(page.out, m, &c);
     }
-    if (document && (ferror(document) | fclose(document)) && !error.status)
-        sr_fail(&error, SR_ERROR_RESOURCE, "%s: cannot be written", a->markdown);
+    command_page_close(&page, &error);
     if (error.status) {
         json_decref(all);
         return command_fail("brdf check", &error);

@@ -64,6 +64,15 @@ bool command_tells_estimators(int argc, char **argv);
 bool command_is_image_ending(const char *path);
 /* Whether a file can be written there, by making and removing the temporary one beside it. */
 sr_status command_check_output(const char *path, struct sr_error *error);
+/* A text that is written whole when it is done, or not at all. Without a path nothing is: page->out is NULL. */
+struct command_page {
+    const char *path;
+    FILE *out;
+    char *text;
+    size_t size;
+};
+sr_status command_page_open(const char *path, struct command_page *page, struct sr_error *error);
+void command_page_close(struct command_page *page, struct sr_error *error); // with an error it is thrown away
 /* "R,G,B,albedo": the channels of these names, and all of a group ("albedo" is albedo.R, albedo.G, albedo.B), in this
  * order. indices: room for image->channel_count of them. */
 sr_status command_select_channels(const struct sr_image *image, const char *label, const char *list, uint32_t *indices,

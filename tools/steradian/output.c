@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -41,6 +42,30 @@ sr_status command_check_output(const char *path, struct sr_error *error)
     close(fd);
     unlink(beside);
     return SR_OK;
+}
+
+sr_status command_page_open(const char *path, struct command_page *page, struct sr_error *error)
+{
+    *page = (struct command_page){.path = path};
+    if (!path)
+        return SR_OK;
+    if (command_check_output(path, error) != SR_OK)
+        return error->status;
+    page->out = open_memstream(&page->text, &page->size);
+    return page->out ? SR_OK : sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory to write it", path);
+}
+
+void command_page_close(struct command_page *page, struct sr_error *error)
+{
+    if (!page->out)
+        return;
+    bool is_whole = !ferror(page->out);
+    if ((fclose(page->out) != 0 || !is_whole) && !error->status)
+        sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory to write it", page->path);
+    if (!error->status)
+        sr_file_write(page->path, page->text, page->size, error);
+    free(page->text);
+    *page = (struct command_page){0};
 }
 
 /* ---- channels ---- */

@@ -35,6 +35,12 @@ int render_keep_begin(const struct render_arguments *a, const struct sr_import_r
     for (int i = 0; i < render_output_count(a); ++i)
         if (strcmp(path, render_output_name(a, scene, i)) == 0)
             return command_usage(&command_render, "--checkpoint %s: that is where the picture goes", path);
+    struct stat st;
+    bool is_something = stat(path, &st) == 0 && !(S_ISREG(st.st_mode) && st.st_size == 0);
+    if (a->checkpoint && !a->resume && is_something && !sr_store_is_store(path)) {
+        sr_fail(&error, SR_ERROR_INPUT, "%s: is no checkpoint: it would be lost", path);
+        return command_fail("render", &error);
+    }
     if (!a->resume && sr_file_exists(path) && !a->quiet)
         fprintf(
             stderr,

@@ -217,18 +217,12 @@ static json_t *row_json(const struct found *f)
                      verdict(f));
 }
 
-/* The page beside its place, then renamed. */
-static sr_status open_page(const struct arguments *a, FILE **page, char *temporary, size_t size, struct sr_error *error)
+static sr_status open_page(const struct arguments *a, struct command_page *page, struct sr_error *error)
 {
-    *page = NULL;
-    if (!a->markdown)
-        return SR_OK;
-    snprintf(temporary, size, "%s.new", a->markdown);
-    *page = fopen(temporary, "w");
-    if (!*page)
-        return sr_fail(error, SR_ERROR_INPUT, "%s cannot be written", a->markdown);
+    if (command_page_open(a->markdown, page, error) != SR_OK || !page->out)
+        return error->status;
     fprintf(
-        *page,
+        page->out,
         "# Validation\n\n"
         "Scenes whose answers are known, measured by `steradian validate --goal %g` (estimator: %s). Each is a pbrt-v4 file in\n"
         "`validation/scenes`, written from its closed form by `validation/generate.py`; expected values also stand in\n"
@@ -289,32 +283,26 @@ static int run(int argc, char **argv)
     if (code)
         return code;
     struct sr_error error = {0};
-    FILE *table = fopen(a.table, "r"), *page;
+    struct command_page page;
+    FILE *table = fopen(a.table, "r");
     if (!table) {
         sr_fail(&error, SR_ERROR_INPUT, "%s cannot be read: a table of cases was expected", a.table);
         return command_fail("validate", &error);
     }
-    char temporary[LINE];
     json_t *rows = a.json ? json_array() : NULL;
     render_catch_interrupts();
-    if (open_page(&a, &page, temporary, sizeof temporary, &error) == SR_OK) {
+    if (open_page(&a, &page, &error) == SR_OK) {
         if (!rows)
             printf("%-16s %-34s %-13s %-52s %9s %6s verdict\n", "case", "scene", "expected", "measured", "relative",
                    "z");
-        run_table(&a, table, page, rows, counts, &error);
+        run_table(&a, table, page.out, rows, counts, &error);
     }
     fclose(table);
-    if (page) {
-        fprintf(page, "\n%d of %d cases pass.\n", counts[1], counts[0]);
-        bool is_written = fclose(page) == 0 && !error.status && rename(temporary, a.markdown) == 0;
-        if (!is_written) {
-            remove(temporary);
-            if (!error.status)
-                sr_fail(&error, SR_ERROR_INPUT, "%s cannot be written", a.markdown);
-        }
-    }
+    if (page.out)
+        fprintf(page.out, "\n%d of %d cases pass.\n", counts[1], counts[0]);
     if (!error.status && counts[0] == 0)
         sr_fail(&error, SR_ERROR_INPUT, "%s holds no case%s%s", a.table, a.only ? " with " : "", a.only ? a.only : "");
+    command_page_close(&page, &error);
     if (error.status == SR_CANCELLED || atomic_load(&render_interrupted)) {
         json_decref(rows);
         return render_interrupt_exit();
