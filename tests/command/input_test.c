@@ -196,3 +196,36 @@ TEST(output_spares_devices_and_foreign_files)
     EXPECT_SAYS(run_expecting(3, "info notes.txt")->err, "notes.txt");
     expect_nothing_left();
 }
+
+/* Forty textures, each made of the one before twice, would be evaluated 2^40 times; so for mixes, and for files. */
+TEST(input_that_grows_twofold_again_and_again_is_refused)
+{
+    static const char *const kinds[2][3] = {
+        {"Texture \"x0\" \"float\" \"constant\"\n",
+         "Texture \"x%d\" \"float\" \"scale\" \"texture tex\" \"x%d\" \"texture scale\" \"x%d\"\n",
+         "Material \"conductor\" \"texture roughness\" \"x40\"\n"},
+        {"MakeNamedMaterial \"x0\" \"string type\" \"diffuse\"\n",
+         "MakeNamedMaterial \"x%d\" \"string type\" \"mix\" \"string materials\" [\"x%d\" \"x%d\"]\n",
+         "NamedMaterial \"x40\"\n"}};
+    for (int k = 0; k < 2; ++k) {
+        char text[8192];
+        int n = snprintf(text, sizeof text, HEAD "%s", kinds[k][0]);
+        for (int i = 1; i <= 40; ++i)
+            n += snprintf(text + n, sizeof text - (size_t)n, kinds[k][1], i, i - 1, i - 1);
+        snprintf(text + n, sizeof text - (size_t)n, "%sShape \"sphere\"\n", kinds[k][2]);
+        put_file("laughs.pbrt", text);
+        EXPECT_SAYS(run_expecting(3, "render laughs.pbrt --quiet")->err, "is made of more than 65536");
+        EXPECT_SAYS(run_expecting(3, "info laughs.pbrt --quiet")->err, "laughs.pbrt:");
+    }
+    for (int i = 0; i < 30; ++i) { // files that include the next one twice
+        char name[32], text[64];
+        snprintf(name, sizeof name, "again%d.pbrt", i);
+        snprintf(text, sizeof text, "Include \"again%d.pbrt\" Include \"again%d.pbrt\"\n", i + 1, i + 1);
+        put_file(name, text);
+    }
+    put_file("again30.pbrt", "Shape \"sphere\"\n");
+    put_file("laughs.pbrt", HEAD "Include \"again0.pbrt\"\n");
+    EXPECT_SAYS(run_expecting(3, "render laughs.pbrt --quiet")->err, "more than 65536 files");
+    EXPECT_SAYS(run_expecting(3, "convert laughs.pbrt --includes flatten -o left.pbrt")->err, "more than 65536 files");
+    expect_nothing_left();
+}

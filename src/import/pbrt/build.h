@@ -11,6 +11,7 @@
 /* One texture, made for the uses that have been asked for: FLOAT, ALBEDO, UNBOUNDED, ILLUMINANT. */
 struct sr_pbrt_bound_texture {
     struct sr_texture made[4];
+    uint64_t parts[4];
     bool is_being_made, has_warned;
 };
 /* A texture that reads an image: what takes long is done last, for all of them at a time. */
@@ -28,6 +29,7 @@ struct sr_pbrt_late_texture {
 };
 struct sr_pbrt_built_material {
     struct sr_material *material; // NULL: interface
+    uint64_t parts;
     bool is_being_made, is_made;
 };
 
@@ -40,7 +42,7 @@ struct sr_pbrt_named_shape {
 };
 
 /* Textures of textures and mixes of mixes: rendering goes down as deep. */
-enum { SR_PBRT_MAX_DEPTH = 64 };
+enum { SR_PBRT_MAX_DEPTH = 64, SR_PBRT_MAX_PARTS = 1 << 16 };
 
 struct sr_pbrt_build {
     struct sr_pbrt_description *d;
@@ -59,6 +61,7 @@ struct sr_pbrt_build {
     float film_diagonal; // [m]
     bool is_in_world;    // a G-buffer's points
     int depth;           // of textures and materials being made
+    uint64_t parts;      // of what is being made, each as often as it is used: so often are they walked and evaluated
 
     struct sr_array named_shapes;             // struct sr_pbrt_named_shape, in the order of the file
     struct sr_array images;                   // struct sr_pbrt_image

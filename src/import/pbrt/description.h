@@ -106,6 +106,8 @@ struct sr_pbrt_instance {
     uint32_t transform;
 };
 
+enum { SR_PBRT_MAX_FILES = 1 << 16 }; // one that is included twice counts twice
+
 struct sr_pbrt_file {
     const char *path;        // compared as a pointer with sr_location.file
     struct sr_location from; // the Include or Import that named it; file NULL: the first file

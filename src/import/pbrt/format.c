@@ -107,6 +107,9 @@ static sr_status include(struct formatter *f, const char *name, struct sr_locati
             return sr_pbrt_fail(&f->d, where, f->p.error, SR_ERROR_INPUT,
                                 "\"%s\": this file is being read already, it includes itself", name);
     }
+    if (f->d.files.count >= SR_PBRT_MAX_FILES)
+        return sr_pbrt_fail(&f->d, where, f->p.error, SR_ERROR_INPUT,
+                            "\"%s\": more than %d files are included, each as often as it is", name, SR_PBRT_MAX_FILES);
     int depth = f->out->depth;
     if (is_import) { // what it changes ends with it
         sr_print_line(f->out, 0);

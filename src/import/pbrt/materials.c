@@ -101,13 +101,23 @@ static sr_status get(struct sr_pbrt_build *b, const struct sr_pbrt_entity *e, st
                                 SR_PBRT_MAX_DEPTH);
         built->is_being_made = true;
         ++b->depth;
+        uint64_t outside = b->parts;
+        b->parts = 1;
         sr_status status = make(b, e, &built->material);
+        built->parts = b->parts;
+        b->parts = outside;
         --b->depth;
         built->is_being_made = false;
+        if (status == SR_OK && built->parts > SR_PBRT_MAX_PARTS)
+            status =
+                sr_pbrt_fail(b->d, e->where, b->error, SR_ERROR_INPUT,
+                             "%s \"%s\" is made of more than %d materials and textures, each as often as it is used",
+                             e->directive, e->name ? e->name : e->model, SR_PBRT_MAX_PARTS);
         if (status != SR_OK)
             return status;
         built->is_made = true;
     }
+    b->parts += built->parts;
     *out = built->material;
     return SR_OK;
 }

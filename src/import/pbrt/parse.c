@@ -266,6 +266,10 @@ sr_status sr_pbrt_include(struct sr_pbrt_parser *p, const char *name)
     if (p->depth >= MAX_DEPTH)
         return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT, "%s \"%s\": files are nested more than %d deep",
                             p->directive, name, MAX_DEPTH);
+    if (p->d->files.count >= SR_PBRT_MAX_FILES)
+        return sr_pbrt_fail(p->d, p->where, p->error, SR_ERROR_INPUT,
+                            "%s \"%s\": more than %d files are included, each as often as it is", p->directive, name,
+                            SR_PBRT_MAX_FILES);
     struct sr_pbrt_file *file = add_file(p, path, p->where);
     if (!file)
         return p->error->status;

@@ -155,6 +155,7 @@ sr_status sr_pbrt_named_texture(struct sr_pbrt_build *b, const struct sr_pbrt_pa
     struct sr_pbrt_bound_texture *bound = &b->textures[index1 - 1];
     int slot = is_float ? 0 : use == SR_PARAM_ALBEDO ? 1 : use == SR_PARAM_UNBOUNDED ? 2 : 3;
     if (bound->made[slot].model) {
+        b->parts += bound->parts[slot];
         *out = bound->made[slot];
         return SR_OK;
     }
@@ -166,9 +167,17 @@ sr_status sr_pbrt_named_texture(struct sr_pbrt_build *b, const struct sr_pbrt_pa
                             SR_PBRT_MAX_DEPTH);
     bound->is_being_made = true;
     ++b->depth;
+    uint64_t outside = b->parts;
+    b->parts = 1;
     sr_status status = make(b, t, bound, use, &bound->made[slot]);
+    bound->parts[slot] = b->parts;
+    b->parts += outside;
     --b->depth;
     bound->is_being_made = false;
+    if (status == SR_OK && bound->parts[slot] > SR_PBRT_MAX_PARTS)
+        status = sr_pbrt_fail(b->d, p->where, b->error, SR_ERROR_INPUT,
+                              "texture \"%s\" is made of more than %d others, each as often as it is used",
+                              p->strings[0], SR_PBRT_MAX_PARTS);
     *out = bound->made[slot];
     return status;
 }
