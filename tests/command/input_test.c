@@ -3,7 +3,9 @@
 #include "run.h"
 
 #include <fcntl.h>
+#include <stdlib.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #define FILM "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8 \"string filename\" \"left.exr\"\n"
@@ -191,6 +193,10 @@ TEST(output_spares_devices_and_foreign_files)
     close(reader);
     unlink(path);
 
+    if (access("/dev/full", W_OK) == 0) { // what is printed, too
+        EXPECT_EQUAL_INT(WEXITSTATUS(system(SR_TEST_COMMAND " brdf list >/dev/full 2>/dev/null")), 4);
+        EXPECT_EQUAL_INT(WEXITSTATUS(system(SR_TEST_COMMAND " info " CORNELL " >/dev/full 2>/dev/null")), 4);
+    }
     put_file("notes.txt", "words\n");
     EXPECT_SAYS(run_expecting(3, "render " CORNELL " --spp 1 -o ok.pfm --checkpoint notes.txt")->err, "no checkpoint");
     EXPECT_SAYS(run_expecting(3, "info notes.txt")->err, "notes.txt");

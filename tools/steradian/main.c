@@ -2,6 +2,7 @@
 /* steradian: light, computed and measured. One file a subcommand; this one knows their names. */
 #include "command.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -26,7 +27,7 @@ static void print_help(FILE *out)
             "Exit codes: 0 done, 1 a check failed, 2 usage, 3 bad input, 4 out of resources, 130/143 interrupted.\n");
 }
 
-int main(int argc, char **argv)
+static int run(int argc, char **argv)
 {
     const char *name = argc > 1 ? argv[1] : "--help";
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0) {
@@ -55,4 +56,14 @@ int main(int argc, char **argv)
         fprintf(stderr, "; did you mean \"%s\"?", nearest);
     fprintf(stderr, "\nTry 'steradian --help'.\n");
     return SR_ERROR_USAGE;
+}
+
+int main(int argc, char **argv)
+{
+    int code = run(argc, argv);
+    struct sr_error error = {0};
+    if ((fflush(stdout) == 0 && !ferror(stdout)) || code > 1) // what else is wrong has been told
+        return code;
+    sr_fail(&error, SR_ERROR_RESOURCE, "standard output cannot be written: %s", strerror(errno));
+    return command_fail(argc > 1 ? argv[1] : "", &error);
 }
