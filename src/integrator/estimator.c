@@ -338,7 +338,7 @@ static sr_spectrum walk(const struct walk *t, const struct sr_path_start *start,
         // a path that carries little ends by lot, and those that survive carry its share
         float carried = sr_max(sr_spectrum_max(beta), sr_spectrum_max(-beta)) * eta_scale; // net fluxes may be negative
         if (carried < 1 && bounce > 1) {
-            float survive = sr_max(carried, 0.05f);
+            float survive = sr_survival(carried);
             if (u[3] >= survive)
                 return L;
             beta *= 1 / survive;

@@ -166,7 +166,7 @@ SR_INLINE sr_spectrum follow(const struct sr_path *path, const struct sr_scene *
         if (!(carried > 0))
             return L;
         if (carried < 1 && bounce > 1) {
-            float survive = sr_max(carried, 0.05f);
+            float survive = sr_survival(carried);
             if (u_light[3] >= survive)
                 return L;
             beta *= 1 / survive;

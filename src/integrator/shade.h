@@ -35,6 +35,14 @@ static inline bool sr_shade_plain(struct sr_hit *x, sr_vec3 d, float u, uint32_t
     return bsdf->model != NULL;
 }
 
+/* The share of paths that go on where each carries so much [1]; whoever does carries the others' share. The root, for
+ * such lots are worth what they save only where little is carried, be it by dark surfaces or after many bounces: with
+ * the share carried itself, dark scenes lose most of their paths early (docs/performance.md). */
+static inline float sr_survival(float carried)
+{
+    return sr_clamp(sqrtf(carried), 0.05f, 1);
+}
+
 /* The ray goes on behind x; false: the path has passed enough. */
 static inline bool sr_pass_by(const struct sr_hit *x, struct sr_ray *ray, int *passed)
 {

@@ -130,7 +130,7 @@ static inline float sr_way_lot(const struct sr_way *p, float carried)
     carried *= p->eta_scale;
     if (!(carried < 1) || p->bounce <= 1)
         return 1;
-    float survive = sr_max(carried, 0.05f);
+    float survive = sr_survival(carried);
     return p->u_light[3] < survive ? 1 / survive : 0;
 }
 
