@@ -24,16 +24,9 @@ static uint64_t render_text(const char *text)
     struct sr_log log = {0};
     if (sr_import_pbrt(path, &options, &r, &log, &error) != SR_OK)
         test_fail(__FILE__, __LINE__, "%s", error.text);
-    struct sr_render_job job = {.scene = r.scene,
-                                .sensor = r.sensor,
-                                .filter = r.filter,
-                                .integrator = r.integrator,
-                                .film = r.film,
-                                .spp = 4,
-                                .lambda = {360, 830},
-                                .jitter_pixel = true,
-                                .jitter_lambda = true,
-                                .threads = 1};
+    struct sr_render_job job = sr_render_job_of(&r);
+    job.spp = 4;
+    job.threads = 1;
     struct sr_film *film;
     struct sr_render_report report;
     EXPECT_EQUAL_INT(sr_render(&job, &film, &report, &error), SR_OK);
