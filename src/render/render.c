@@ -29,15 +29,16 @@ static bool has_splats(const struct sr_render_job *job)
     return job->integrator.model->splats && job->sensor.model->connect && !job->film.buckets;
 }
 
-/* The unit of splats: 2^-46 or so of the picture's values if all that the lights emit went evenly through the scene's
- * bounds, so that lights twice as bright make sums of the same bits; up to 2^49 of those values there is room. */
+/* The unit of splats: 2^-60 or so of the picture's values if all that the lights emit went evenly through the scene's
+ * bounds, so that lights twice as bright make sums of the same bits. A splat is its value's share of all pixels, 2^-20
+ * of it in a megapixel: what is 2^-30 as bright keeps ten bits, what is 2^55 as bright still fits. */
 static double splat_unit(const struct sr_render_job *job)
 {
     struct sr_box box = sr_scene_bounds(job->scene);
     double diagonal = (double)sr_length(sr_sub(box.hi, box.lo));
     double ratio = (double)job->film.exposure_time * (double)job->film.iso / 100;
     double value = sr_lights_emitted(sr_scene_lights(job->scene)) / (diagonal * diagonal) * ratio;
-    return value > 0x1p-900 && value < 0x1p900 ? ldexp(1, ilogb(value) - 46) : 0x1p-56;
+    return value > 0x1p-900 && value < 0x1p900 ? ldexp(1, ilogb(value) - 60) : 0x1p-56;
 }
 
 static sr_status add_splats(const struct sr_render_job *job, struct sr_film *film, uint32_t blocks,
