@@ -25,43 +25,45 @@ from common import SMOKE, SPECTRA, expect, run, scene_of
 SIZE, SLOW_SIZE = "37,30", "19,14"  # no multiples of a tile
 THREADS, TILES, RANKS = [1, 2, 3, 7], [5, 8, 16], [1, 2, 3, 4]
 MOST_S = 5  # [s] from a rank's death to the end of the job
+LONG_S, MOST_FACTOR = 2, 512  # [s] that one thread works at what is to be killed; so many times the samples at most
+MOST_CHAINS = 20  # for each kill: more say that nothing can be killed
 # Open MPI keeps what it has allocated: to look for leaks would find its own
 ENVIRONMENT = {**os.environ, "ASAN_OPTIONS": "detect_leaks=0", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
 class Kind:
-    """What a film can hold, and how its sums come about. factor: so many times the samples take some seconds, to be killed in."""
+    """What a film can hold, and how its sums come about."""
 
-    def __init__(self, options, factor, film=None, world="", has_parts=True):
-        self.options, self.factor, self.film, self.world, self.has_parts = options, factor, film, world, has_parts
+    def __init__(self, options, film=None, world="", has_parts=True):
+        self.options, self.film, self.world, self.has_parts = options, film, world, has_parts
 
 
-def by(estimator, factor=64, **more):
-    return Kind(["--estimator", estimator], factor, **more)
+def by(estimator, **more):
+    return Kind(["--estimator", estimator], **more)
 
 
 # each estimator that makes pictures is one of them: the program is asked which there are
 KINDS = {
     "path": by("path"),
-    "lean path": Kind(["--no-aov"], 64),
-    "replicates": Kind(["--replicates", "4"], 64),
-    "adaptive": Kind(["--adaptive", "--spp", "32"], 32, has_parts=False),
-    "bdpt": by("bdpt", 32),
-    "bdpt replicates": Kind(["--estimator", "bdpt", "--replicates", "2", "--no-aov"], 32),
-    "lightpath": by("lightpath", 32),
-    "caustics": by("caustics", 32),
-    "guided path": by("guidedpath,guiding=on", 32),
-    "guided path by itself": by("guidedpath", 32),
-    "roulette path": by("roulettepath,learned=on", 32),
-    "roulette path by itself": by("roulettepath", 32),
-    "volpath": by("volpath", 32, world=SMOKE),
-    "simplevolpath": by("simplevolpath", 32, world=SMOKE),
+    "lean path": Kind(["--no-aov"]),
+    "replicates": Kind(["--replicates", "4"]),
+    "adaptive": Kind(["--adaptive", "--spp", "32"], has_parts=False),
+    "bdpt": by("bdpt"),
+    "bdpt replicates": Kind(["--estimator", "bdpt", "--replicates", "2", "--no-aov"]),
+    "lightpath": by("lightpath"),
+    "caustics": by("caustics"),
+    "guided path": by("guidedpath,guiding=on"),
+    "guided path by itself": by("guidedpath"),
+    "roulette path": by("roulettepath,learned=on"),
+    "roulette path by itself": by("roulettepath"),
+    "volpath": by("volpath", world=SMOKE),
+    "simplevolpath": by("simplevolpath", world=SMOKE),
     "simplepath": by("simplepath"),
     "randomwalk": by("randomwalk"),
-    "ambientocclusion": by("ambientocclusion", 256),
+    "ambientocclusion": by("ambientocclusion"),
     "strategies": by("estimator,strategies=cosine-hemisphere+light-area"),
-    "spectra": Kind([], 32, film=SPECTRA),
-    "gbuffer": Kind(["--sampler", "independent"], 64, film='"gbuffer"'),
+    "spectra": Kind([], film=SPECTRA),
+    "gbuffer": Kind(["--sampler", "independent"], film='"gbuffer"'),
 }
 NO_PICTURES = {"quadrature"}
 QUICK = {"adaptive", "bdpt", "guided path"}  # by ranks and killed even in a hurry
@@ -89,7 +91,12 @@ class Picture:
         expect(code == 0, f"{name}: exit {code}: {err}")
         self.seconds = time.monotonic() - start
         self.sha = self.sha_of_file()
-        self.counts = json.loads(out)["counts"]
+        told = json.loads(out)
+        self.counts, self.render_s = told["counts"], told["time"]["render_s"]
+
+    def long(self):
+        """The same with so many samples that it can be killed at work."""
+        return Picture(self.p, self.name, max(1, min(MOST_FACTOR, round(LONG_S / self.render_s))))
 
     def words(self, out, more):
         return ["render", str(self.scene), "--quiet", "--json", "-o", str(out or self.out), *self.options, *map(str, more)]
@@ -218,6 +225,7 @@ def kills(picture, chance, count):
     while t.lone + len(t.took) < count:
         picture.clean()
         t.chains += 1
+        expect(t.chains <= MOST_CHAINS * count, f"{picture.name}: {t.lone + len(t.took)} of {count} could be killed in {t.chains - 1} chains")
         n = RANKS[-1] if picture.p.mpi else 0
         for step in range(100):
             t.resumed += picture.keep.exists()
@@ -268,7 +276,7 @@ def soak(a, chance, folder):
         in_full = not a.quick or name in QUICK
         renders = matrix(picture, chance, 2 if a.quick else a.renders, in_full and has_ranks)
         merges = parts(picture, chance, 1 if a.quick else 0)
-        t = kills(Picture(p, name, 1 if a.slow else picture.kind.factor // (8 if a.quick else 1)), chance, a.kills) if a.kills and in_full else Tally()
+        t = kills(picture.long(), chance, a.kills) if a.kills and in_full else Tally()
         total += t
         all_renders, all_merges = all_renders + renders, all_merges + merges
         took = f"{sorted(t.took)[len(t.took) // 2]:.2f}, {max(t.took):.2f}" if t.took else ""
