@@ -118,37 +118,46 @@ def refusals(p):
 
 def lost_rank(p, is_slow):
     """Killed while it works; fewer ranks go on to the same bytes. SIGTERM to mpirun does the same."""
-    options = [SCENE, "--resolution", "40,40", "--quiet", "--spp", "64" if is_slow else "512", "-o", "lost.exr"]
+    options = [SCENE, "--resolution", "40,40", "--quiet", "--spp", "512" if is_slow else "4096", "-o", "lost.exr"]
     p.run([p.alone, "render", *options])
     whole = hash_of(p.folder / "lost.exr")
     for how in ("kill -9 of a rank", "SIGTERM to mpirun"):
         (p.folder / "lost.exr").unlink()
-        job = subprocess.Popen(p.ranks(4, *options, "--each-rank", "--threads", "1", "--checkpoint-interval", "0.2"), env=ENVIRONMENT, cwd=p.folder,
-                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        keep = p.folder / "lost.exr.srk"
-        until = time.monotonic() + 60
-        while not keep.exists() and job.poll() is None and time.monotonic() < until:
-            time.sleep(0.02)
-        start = time.monotonic()
-        if how.startswith("kill"):
-            children = subprocess.run(["pgrep", "-P", str(job.pid)], capture_output=True, text=True, check=False).stdout.split()
-            if children:
-                os.kill(int(children[-1]), signal.SIGKILL)
-        else:
-            job.terminate()
-        code = job.wait(timeout=60)
-        took = time.monotonic() - start
-        picture = p.folder / "lost.exr"
-        if code == 0 or (picture.exists() and not keep.exists() and hash_of(picture) == whole): # mpirun was told too late
+        for _ in range(5):
+            took = stopped(p, options, how)
+            if took is not None:
+                break
             print(f"{how}: the render was faster")
-            picture.touch()
-            continue
+        expect(took is not None, f"{how}: the render was always faster")
         expect(is_slow or took < 5, f"{how}: the job took {took:.1f} s to end")
-        expect(keep.exists(), f"{how}: left no checkpoint")
         p.run(p.ranks(2, *options, "--each-rank", "--threads", "1", "--resume"))
         expect(hash_of(p.folder / "lost.exr") == whole, f"{how}: goes on to other bytes")
-        expect(not keep.exists(), f"{how}: the checkpoint is left")
+        expect(not (p.folder / "lost.exr.srk").exists(), f"{how}: the checkpoint is left")
         print(f"{how}: the job ended after {took:.1f} s, 2 ranks went on to the same bytes")
+
+
+def stopped(p, options, how):
+    """Stops a job when it has a checkpoint. How long it then lived [s]; None: it was through before."""
+    job = subprocess.Popen(p.ranks(4, *options, "--each-rank", "--threads", "1", "--checkpoint-interval", "0.1"), env=ENVIRONMENT, cwd=p.folder,
+                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    keep, picture = p.folder / "lost.exr.srk", p.folder / "lost.exr"
+    until = time.monotonic() + 60
+    while not keep.exists() and job.poll() is None and time.monotonic() < until:
+        time.sleep(0.02)
+    start = time.monotonic()
+    if how.startswith("kill"):
+        children = subprocess.run(["pgrep", "-P", str(job.pid)], capture_output=True, text=True, check=False).stdout.split()
+        if children:
+            os.kill(int(children[-1]), signal.SIGKILL)
+    else:
+        job.terminate()
+    code = job.wait(timeout=60)
+    took = time.monotonic() - start
+    if code == 0 or (picture.exists() and not keep.exists()):  # it ended before it was told
+        picture.unlink()
+        return None
+    expect(keep.exists(), f"{how}: left no checkpoint")
+    return took
 
 
 def main():
