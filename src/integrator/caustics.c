@@ -89,15 +89,19 @@ static void gather(const struct sr_photon_map *map, struct gathering *g, sr_spec
     *L_single += beta * g->single * density;
 }
 
+/* Light that mirrors throw on what has scattered this path before is the photons'. */
+static bool is_photons(const struct sr_photon_map *map, const struct sr_way *p)
+{
+    return map && p->is_scattered && isinf(p->pdf);
+}
+
 /* L along the path, but for what photons of a single wavelength bring. */
 static sr_spectrum walk(const struct caustics *m, const struct sr_photon_map *map, struct sr_way *p,
                         sr_spectrum *single)
 {
     for (;;) {
-        // light that mirrors throw on what has scattered this path before is the photons'
-        bool is_photons = map && p->is_scattered && isinf(p->pdf);
         sr_spectrum met;
-        enum sr_arrival arrival = sr_way_arrive(p, m->max_depth, !is_photons, &met);
+        enum sr_arrival arrival = sr_way_arrive(p, m->max_depth, !is_photons(map, p), &met);
         if (arrival == SR_ARRIVAL_END)
             return p->L;
         if (arrival == SR_ARRIVAL_NOTHING)
@@ -113,7 +117,7 @@ static sr_spectrum walk(const struct caustics *m, const struct sr_photon_map *ma
                    p->beta, &p->L, single);
         if (!sr_way_scatter(p))
             return p->L;
-        float stands_for = sr_way_lot(p, sr_spectrum_max(p->beta));
+        float stands_for = sr_way_lot(p, sr_spectrum_max(p->beta), !is_photons(map, p));
         if (stands_for == 0)
             return p->L;
         p->beta *= stands_for;

@@ -170,7 +170,10 @@ static sr_spectrum walk(const struct sr_pilot *pilot, int max_depth, struct less
         sr_way_leave(p, &s, record.pdf);
         if (!(sr_spectrum_max(p->beta) > 0))
             return p->L;
-        float stands_for = sr_way_lot(p, sr_spectrum_max(unguided));
+        sr_spectrum before = p->L;
+        float stands_for = sr_way_lot(p, sr_spectrum_max(unguided), true);
+        if (lesson)
+            note_gain(lesson, p->L - before, p->w);
         if (stands_for == 0)
             return p->L;
         p->beta *= stands_for;

@@ -73,6 +73,7 @@ SR_INLINE sr_spectrum follow(const struct sr_path *path, const struct sr_scene *
     float pdf = INFINITY;
     float eta_scale = 1;       // what refraction has made of beta, and will undo [1]
     bool is_scattered = false; // by more than mirrors and clear glass
+    float outside = 1;         // beta of light from outside the scene, over beta [1]
     struct sr_cone cone = sr_cone_of(start, has_footprints);
     struct sr_hit hits[2]; // where the path is now, and where it was scattered last
     struct sr_hit *x = &hits[0], *from = &hits[1];
@@ -91,7 +92,7 @@ SR_INLINE sr_spectrum follow(const struct sr_path *path, const struct sr_scene *
         if (!(is_seen ? sr_trace(scene, &ray, x, worker) : sr_trace_bare(scene, &ray, x, worker))) {
             if (is_seen && first)
                 *first = (struct sr_hit){.t = INFINITY};
-            return L + beta * escaping(scene, &from->point, pdf, &ray, w);
+            return L + beta * outside * escaping(scene, &from->point, pdf, &ray, w);
         }
         if (SR_UNLIKELY(is_seen) && first)
             *first = *x;
@@ -161,15 +162,22 @@ SR_INLINE sr_spectrum follow(const struct sr_path *path, const struct sr_scene *
         ++bounce;
         is_seen = false;
 
-        // a path that carries little ends by lot, and those that survive carry its share
+        // a path that carries little ends by lot, and those that survive carry its share. There is no lot over light
+        // from outside the scene, most of which only this ray can find
         float carried = sr_spectrum_max(beta) * eta_scale;
         if (!(carried > 0))
             return L;
+        outside = 1;
         if (carried < 1 && bounce > 1) {
             float survive = sr_survival(carried);
-            if (u_light[3] >= survive)
+            bool has_outside = lights->infinite_count > 0;
+            if (u_light[3] >= survive) {
+                if (has_outside && sr_sees_outside(scene, &from->point, ray.d, worker))
+                    L += beta * escaping(scene, &from->point, pdf, &ray, w);
                 return L;
+            }
             beta *= 1 / survive;
+            outside = has_outside ? survive : 1;
         }
     }
 }

@@ -87,7 +87,7 @@ static float survival(const struct shared *shared, const struct sr_guide_cell *c
             lesson->weight = weight;
     }
     if (!(shared->rate > 0)) // as plain paths do
-        return p->bounce > 1 ? sr_clamp(sr_spectrum_max(p->beta) * p->eta_scale, 0.05f, 1) : 1;
+        return p->bounce > 1 ? sr_survival(sr_spectrum_max(p->beta) * p->eta_scale) : 1;
     if (p->bounce == 0)
         return 1;
     float survive = *rate * sr_pilot_mean(p->beta, p->w) * cell->worth[kind];

@@ -43,6 +43,13 @@ static inline float sr_survival(float carried)
     return sr_clamp(sqrtf(carried), 0.05f, 1);
 }
 
+/* Whether nothing is between x and the outside of the scene. */
+static inline bool sr_sees_outside(const struct sr_scene *scene, const struct sr_point *x, sr_vec3 wi,
+                                   struct sr_worker *worker)
+{
+    return sr_unoccluded(scene, x, &(struct sr_light_sample){.wi = wi, .distance = INFINITY}, worker);
+}
+
 /* The ray goes on behind x; false: the path has passed enough. */
 static inline bool sr_pass_by(const struct sr_hit *x, struct sr_ray *ray, int *passed)
 {

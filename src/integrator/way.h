@@ -16,6 +16,7 @@ struct sr_way {
     struct sr_worker *worker;
     sr_spectrum L, beta; // brought so far [W m^-2 sr^-1 nm^-1], and what further light is multiplied by [1]
     struct sr_ray ray;
+    float outside;     // beta of light from outside the scene, over beta [1]
     float pdf;         // that chose the ray [1/sr]; infinite: no light sampling could compete
     float eta_scale;   // what refraction has made of beta, and will undo [1]
     bool is_scattered; // by more than mirrors and clear glass
@@ -37,7 +38,7 @@ static inline void sr_way_begin(struct sr_way *p, const struct sr_scene *scene, 
     p->scene = scene, p->sampler = sampler, p->w = w, p->first = first, p->worker = worker;
     p->L = SR_BLACK, p->beta = SR_ONE;
     p->ray = start->ray;
-    p->pdf = INFINITY, p->eta_scale = 1;
+    p->pdf = INFINITY, p->eta_scale = p->outside = 1;
     p->is_scattered = false;
     p->bounce = p->passed = 0;
     p->cone = sr_cone_of(start, sr_scene_has_footprints(scene));
@@ -45,6 +46,13 @@ static inline void sr_way_begin(struct sr_way *p, const struct sr_scene *scene, 
         p->from = *start->receiver;
         p->pdf = start->pdf;
     }
+}
+
+/* Light that reaches the path at once where the ray meets x, or nothing (NULL). */
+static inline sr_spectrum sr_way_meet(const struct sr_way *p, const struct sr_hit *x)
+{
+    struct sr_path_start now = {.ray = p->ray, .receiver = isinf(p->pdf) ? NULL : &p->from, .pdf = p->pdf};
+    return p->beta * sr_met_at_once(p->scene, &now, x, p->ray.d, p->w);
 }
 
 enum sr_arrival { SR_ARRIVAL_END, SR_ARRIVAL_NOTHING, SR_ARRIVAL_SURFACE };
@@ -62,8 +70,7 @@ static inline enum sr_arrival sr_way_arrive(struct sr_way *p, int max_depth, boo
         *p->first = is_hit ? *x : (struct sr_hit){.t = INFINITY};
     *met = SR_BLACK;
     if (counts && (!is_hit || x->light != SR_NO_LIGHT)) {
-        struct sr_path_start now = {.ray = p->ray, .receiver = isinf(p->pdf) ? NULL : &p->from, .pdf = p->pdf};
-        *met = p->beta * sr_met_at_once(p->scene, &now, is_hit ? x : NULL, p->ray.d, p->w);
+        *met = is_hit ? sr_way_meet(p, x) : p->outside * sr_way_meet(p, NULL);
         p->L += *met;
     }
     if (!is_hit || (x->material && p->bounce == max_depth))
@@ -124,14 +131,22 @@ static inline bool sr_way_scatter(struct sr_way *p)
 }
 
 /* A path that carries little ends by lot, and those that survive carry its share: what of all they stand for [1]. 0: it
- * ends. */
-static inline float sr_way_lot(const struct sr_way *p, float carried)
+ * ends. There is no lot over light from outside the scene, as in path.c; counts: it is this path's to find. */
+static inline float sr_way_lot(struct sr_way *p, float carried, bool counts)
 {
     carried *= p->eta_scale;
+    p->outside = 1;
     if (!(carried < 1) || p->bounce <= 1)
         return 1;
     float survive = sr_survival(carried);
-    return p->u_light[3] < survive ? 1 / survive : 0;
+    bool has_outside = sr_scene_lights(p->scene)->infinite_count > 0;
+    if (p->u_light[3] < survive) {
+        p->outside = has_outside ? survive : 1;
+        return 1 / survive;
+    }
+    if (counts && has_outside && sr_sees_outside(p->scene, &p->from, p->ray.d, p->worker))
+        p->L += sr_way_meet(p, NULL);
+    return 0;
 }
 
 #endif

@@ -192,7 +192,35 @@ static void room(const struct row *row)
     world_free(&w);
 }
 
+/* From the centre of a bowl, half a sphere, into it. The bowl sees itself and the sky by halves: L = rho / (2 - rho)
+ * below a sky of 1. Paths that end by lot must lose none of the sky's light, nor find it twice; some go through a sheet
+ * that does not scatter. a: reflectance. */
+static struct drawn into_bowl(const void *context, sr_vec2 u, sr_vec2 v)
+{
+    (void)context, (void)v;
+    sr_vec3 d = sr_warp_uniform_hemisphere(u);
+    return (struct drawn){{0, 0, 0}, sr_neg(d), 1};
+}
+
+static void bowl(const struct row *row)
+{
+    static const char *const ways[] = {"path", "caustics", "bdpt"};
+    for (size_t way = 0; way < sizeof ways / sizeof *ways; ++way) {
+        struct world w = world_of("Integrator \"%s\" \"integer maxdepth\" 40\nWorldBegin\n"
+                                  "LightSource \"infinite\" \"float scale\" 1\n"
+                                  "Material \"diffuse\" \"spectrum reflectance\" [360 %.9g 830 %.9g]\n"
+                                  "Shape \"sphere\" \"float radius\" 1 \"float zmax\" 0\n"
+                                  "Material \"interface\" Shape \"disk\" \"float height\" 0.1 \"float radius\" 1\n",
+                                  ways[way], row->a, row->a);
+        check(row, ways[way], mean_luminance(&w.job, into_bowl, NULL, 4096), 24 * GOAL);
+        world_free(&w);
+    }
+}
+
 const struct row enclosure_rows[] = {
+    {"D6.0.1", "bowl below the sky, rho = 0.1", 0.1 / 1.9, bowl, 0.1, 0},
+    {"D6.0.5", "bowl below the sky, rho = 0.5", 0.5 / 1.5, bowl, 0.5, 0},
+    {"D6.0.9", "bowl below the sky, rho = 0.9", 0.9 / 1.1, bowl, 0.9, 0},
     {"D1.0.1", "closed enclosure, rho = 0.1", 1.11111111111, closed, 0.1, 0},
     {"D1.0.5", "closed enclosure, rho = 0.5", 2, closed, 0.5, 0},
     {"D1", "closed enclosure, rho = 0.8", 5.0, closed, 0.8, 0},

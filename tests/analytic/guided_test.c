@@ -209,6 +209,17 @@ TEST(guided_paths_keep_the_light_of_a_furnace)
     expect_light_of_furnace("guidedpath,guiding=on,pilot=2");
 }
 
+/* Half a sphere below the sky, seen from its centre: paths that end by lot lose none of the sky's light, which only
+ * they find. */
+TEST(guided_paths_find_all_of_the_sky)
+{
+    expect_same_light("bowl",
+                      "LookAt 0 0 0  0 0 -1  0 1 0 Camera \"perspective\" \"float fov\" 100\n" SMALL(
+                          "path", "12") "WorldBegin\nLightSource \"infinite\"\n" GREY
+                                        "Shape \"sphere\" \"float radius\" 1 \"float zmax\" 0\n",
+                      "guidedpath,guiding=on,pilot=2", (const uint32_t[]){512, 512}, 16, 0.002);
+}
+
 TEST(guided_paths_do_not_depend_on_threads_or_tiles)
 {
     expect_the_same_for_any_threads_and_tiles(SMALL("path", "6") LAMP_IN_A_TUBE, "guidedpath,guiding=on,pilot=4",
