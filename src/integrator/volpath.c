@@ -111,7 +111,7 @@ static bool survives(struct sr_carried *c, float eta_scale, int bounce, float u)
         return false;
     if (carried >= 1 || bounce <= 1)
         return true;
-    float survive = sr_max(carried, 0.05f);
+    float survive = sr_survival(carried);
     c->f *= 1 / survive;
     return u < survive;
 }
