@@ -175,7 +175,9 @@ def passes(build, test):
 def hunt(root, build, names):
     copy = build / "source"
     shutil.rmtree(copy, ignore_errors=True)
-    shutil.copytree(root, copy, ignore=lambda folder, entries: [e for e in entries if pathlib.Path(folder) == root and (e in (".git", "out") or e.startswith("build"))])
+    # dated now: what an earlier hunt has left of its last mutant is older
+    shutil.copytree(root, copy, copy_function=shutil.copy,
+                    ignore=lambda folder, entries: [e for e in entries if pathlib.Path(folder) == root and (e in (".git", "out") or e.startswith("build"))])
     subprocess.run(["cmake", "-S", copy, "-B", build, "-G", "Ninja" if shutil.which("ninja") else "Unix Makefiles", "-DCMAKE_BUILD_TYPE=Release", "-DSTERADIAN_LTO=OFF"], check=True, stdout=subprocess.DEVNULL)
     caught, hunted = 0, [m for m in MUTANTS if not names or any(n in m.name for n in names)]
     for test in sorted({m.test for m in hunted}):
