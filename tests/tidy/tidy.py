@@ -5,6 +5,7 @@
 Usage: tidy.py ROOT        prints each offence as file:line: what, and exits 1 if there is one
        tidy.py --self-test plants one offence of each kind in a copy and sees that it is found
 """
+import os
 import pathlib
 import re
 import shutil
@@ -44,12 +45,20 @@ MOST_LINES = 600
 NUMBERS = re.compile(r"[\s{}(),;+\-.\dxXeEa-fA-FuUlL]*")
 
 
+def all_files(root):
+    """All files but what builds and runs have made."""
+    for folder, folders, names in os.walk(root):
+        folder = pathlib.Path(folder)
+        folders[:] = [f for f in folders if f not in (".git", "out", "__pycache__") and not (folder / f / "CMakeCache.txt").exists()]
+        yield from (folder / name for name in names)
+
+
 def tracked(root):
     try:
         out = subprocess.run(["git", "-C", str(root), "ls-files"], capture_output=True, text=True, check=True).stdout
         files = [root / line for line in out.splitlines()]
     except (OSError, subprocess.CalledProcessError):
-        files = [p for p in root.rglob("*") if p.is_file() and "build" not in p.parts]
+        files = all_files(root)  # no clone, or of another user
     return [p for p in files if p.is_file()]
 
 
