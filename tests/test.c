@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#define _POSIX_C_SOURCE 200809L
+#define _XOPEN_SOURCE 700
 #include "test.h"
 
 #include "temporary.h"
 
+#include <ftw.h>
 #include <setjmp.h>
 #include <time.h>
 #include <unistd.h>
@@ -14,7 +15,7 @@
 static struct CMUnitTest tests[MAX_TESTS];
 static size_t test_count;
 
-static double processor_s(void)
+double test_processor_s(void)
 {
     struct timespec t;
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
@@ -24,9 +25,9 @@ static double processor_s(void)
 // slow tests say so, for whoever wants the suite to be faster
 static void run(void **state)
 {
-    double start = processor_s();
+    double start = test_processor_s();
     (*(void (**)(void))state)();
-    double taken = processor_s() - start;
+    double taken = test_processor_s() - start;
     if (taken >= 2)
         fprintf(stderr, "             %.1f s of processor time\n", taken);
 }
@@ -119,14 +120,21 @@ size_t test_address_space_B(void)
     return (size_t)pages * (size_t)sysconf(_SC_PAGESIZE);
 }
 
+static char folder[512];
+
 const char *test_folder(void)
 {
-    static char folder[512];
-    static bool made;
-    if (!made && !make_temporary_folder("test", folder))
+    if (!folder[0] && !make_temporary_folder("test", folder))
         abort();
-    made = true;
     return folder;
+}
+
+static int remove_entry(const char *path, const struct stat *status, int type, struct FTW *place)
+{
+    (void)status;
+    (void)type;
+    (void)place;
+    return remove(path);
 }
 
 static int by_name(const void *a, const void *b)
@@ -139,7 +147,10 @@ int main(int argc, char **argv)
     if (argc > 1) // only the tests of that name; * and ? stand for anything
         cmocka_set_test_filter(argv[1]);
     qsort(tests, test_count, sizeof tests[0], by_name);
-    return _cmocka_run_group_tests("steradian", tests, test_count, NULL, NULL);
+    int failed = _cmocka_run_group_tests("steradian", tests, test_count, NULL, NULL);
+    if (!failed && folder[0]) // else it tells more than the message
+        nftw(folder, remove_entry, 16, FTW_DEPTH | FTW_PHYS);
+    return failed;
 }
 
 #if defined(__has_feature)

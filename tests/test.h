@@ -67,9 +67,13 @@ void test_chi2(const char *file, int line, const double *observed, const double 
 bool is_slow_build(void);
 /* A file of the optional reference folder; skips the test with a message where it is absent. Static buffer. */
 const char *test_reference_file(const char *name);
+/* Who waits for so many seconds [s] waits for what never comes: no machine is so slow, nor so busy. */
+enum { TEST_FOREVER_S = 900 };
+/* What this process has had of processors: limits of time are of that, as other processes take of the clock's. */
+double test_processor_s(void);
 /* What this process has of its address space, for limits upon that. */
 size_t test_address_space_B(void);
-/* A fresh temporary folder for this test program. */
+/* A fresh temporary folder for this test program; it stays where a test fails. */
 const char *test_folder(void);
 
 #endif

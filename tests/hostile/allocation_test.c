@@ -44,7 +44,7 @@ static void try_all(const char *path, uint64_t most, struct tally *t)
         unlink(out);
         error = (struct sr_error){0};
         t->number = k;
-        alarm(60);
+        alarm(TEST_FOREVER_S);
         sr_alloc_fail(k, 1);
         sr_status status = hostile_render(path, out, &error);
         sr_alloc_fail(0, 0);

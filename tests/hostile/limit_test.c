@@ -21,7 +21,7 @@ static int run(const char *scene, const char *out, const char *words, size_t lim
         struct rlimit r = {limit_B, limit_B};
         dup2(file, 1);
         dup2(file, 2);
-        alarm(100);
+        alarm(TEST_FOREVER_S);
         setrlimit(RLIMIT_AS, &r);
         execl(SR_TEST_COMMAND, SR_TEST_COMMAND, "render", scene, "--spp", "1", "--threads", "2", "--out", out,
               (char *)NULL);

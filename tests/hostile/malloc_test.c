@@ -75,7 +75,7 @@ static void try_all(const char *path, uint64_t most, struct tally *t)
     for (uint64_t k = 0; k < t->count; k += most ? t->count / most + 1 : 1) {
         error = (struct sr_error){0};
         t->number = k;
-        alarm(60);
+        alarm(TEST_FOREVER_S);
         atomic_store(&fails_at, atomic_load(&calls) + k);
         sr_status status = hostile_render(path, out, &error);
         atomic_store(&fails_at, UINT64_MAX);

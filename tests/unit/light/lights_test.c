@@ -372,10 +372,11 @@ TEST(infinite_lights_have_equal_shares_with_the_tree_and_a_uniform_sky_none)
     EXPECT(!sr_lights_pick(&l, &x, 0.5f, &index, &pmf));
 }
 
-/* not a matter of truth but of cost: told, with generous limits */
+/* not a matter of truth but of cost: told, and a hundred times the lights take less than a thousand times as long */
 TEST(trees_are_built_and_walked_fast)
 {
     const uint32_t counts[] = {1, 10, 1000, 10000, 1000000};
+    double before_s = 0;
     for (int k = 0; k < 5; ++k) {
         uint32_t n = counts[k];
         struct sr_arena arena = {0};
@@ -393,30 +394,31 @@ TEST(trees_are_built_and_walked_fast)
             lights[i] = (struct sr_light){&sr_light_area, &areas[i]};
         }
         struct sr_lights l;
-        double t0 = sr_clock_s();
+        double t0 = test_processor_s();
         EXPECT(sr_lights_build(&arena, lights, n, SR_LIGHTS_BVH, &l, &error) == SR_OK);
-        double build_s = sr_clock_s() - t0;
+        double build_s = test_processor_s() - t0;
         enum { WALKS = 100000, PLACES = 1024 };
         static struct sr_point x[PLACES];
         static uint32_t found[PLACES];
         for (int i = 0; i < PLACES; ++i)
             x[i] = random_receiver(&rng, 10, true);
         float sum = 0, pmf = 0;
-        t0 = sr_clock_s();
+        t0 = test_processor_s();
         for (int i = 0; i < WALKS; ++i)
             sum +=
                 sr_lights_pick(&l, &x[i % PLACES], (float)(i * 7919 % WALKS) / (float)WALKS, &found[i % PLACES], &pmf)
                     ? pmf
                     : 0;
-        double pick_ns = (sr_clock_s() - t0) / WALKS * 1e9;
-        t0 = sr_clock_s();
+        double pick_ns = (test_processor_s() - t0) / WALKS * 1e9;
+        t0 = test_processor_s();
         for (int i = 0; i < WALKS; ++i)
             sum += sr_lights_pmf(&l, &x[i % PLACES], found[i % PLACES]);
-        double pmf_ns = (sr_clock_s() - t0) / WALKS * 1e9;
+        double pmf_ns = (test_processor_s() - t0) / WALKS * 1e9;
         printf("    %7u lights: pick %.0f ns, pmf %.0f ns, built in %.3f s, %.1f B a light (%g)\n", n, pick_ns, pmf_ns,
                build_s, (double)arena.total / n, (double)sum);
         if (n == 1000000)
-            EXPECT(build_s < 20 && (double)arena.total / n < 64);
+            EXPECT(build_s < 1000 * fmax(before_s, 0.01) && (double)arena.total / n < 64);
+        before_s = build_s;
         sr_free(quads);
         sr_free(areas);
         sr_free(lights);
