@@ -156,7 +156,8 @@ TEST(measure_when_interrupted_prints_what_there_is)
         "WorldBegin LightSource \"infinite\"\nAreaLightSource \"diffuse\" Shape \"sphere\" \"float radius\" 0.1\nTranslate 0 0 3\n"
         "#@ Meter \"irradiance\" \"normal n\" [0 0 -1] \"string name\" \"m\"\n");
     pid_t pid = start("measure long.pbrt --samples 100000000000 -q");
-    nanosleep(&(struct timespec){.tv_sec = 2}, NULL);
+    wait_until_caught(pid, SIGINT);
+    nanosleep(&(struct timespec){.tv_nsec = 500000000}, NULL);
     kill(pid, SIGINT);
     const struct said *s = finish(pid);
     EXPECT_EQUAL_INT(s->code, 130);

@@ -76,6 +76,23 @@ TEST(even_parts_by_number_cover_all_samples)
     expect_same_file("whole.exr", "merged.exr");
 }
 
+/* Whether it is killed after that checkpoint is there. */
+static bool kill_when_kept(const char *arguments, const char *checkpoint)
+{
+    char path[600];
+    snprintf(path, sizeof path, "%s/%s", test_folder(), checkpoint);
+    pid_t pid = start(arguments);
+    int how = 0;
+    for (double start_s = sr_clock_s(); access(path, F_OK) != 0 && sr_clock_s() - start_s < TEST_FOREVER_S;) {
+        if (waitpid(pid, &how, WNOHANG) == pid)
+            return false;
+        nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
+    }
+    kill(pid, SIGKILL);
+    EXPECT(waitpid(pid, &how, 0) == pid);
+    return WIFSIGNALED(how) && access(path, F_OK) == 0;
+}
+
 /* Killed as soon as something is kept of it. */
 TEST(a_part_that_was_killed_goes_on)
 {
@@ -85,16 +102,10 @@ TEST(a_part_that_was_killed_goes_on)
     snprintf(text, sizeof text, "%s -o uncut.srp", part);
     run_expecting(0, text);
     snprintf(text, sizeof text, "%s -o killed.srp --checkpoint-interval 0.02 --threads 1", part);
-    pid_t pid = start(text);
-    double start_s = sr_clock_s();
-    char checkpoint[600];
-    snprintf(checkpoint, sizeof checkpoint, "%s/killed.srp.srk", test_folder());
-    while (access(checkpoint, F_OK) != 0 && sr_clock_s() - start_s < 60)
-        nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
-    kill(pid, SIGKILL);
-    int how = 0;
-    EXPECT(waitpid(pid, &how, 0) == pid && WIFSIGNALED(how));
-    EXPECT(access(checkpoint, F_OK) == 0);
+    bool is_killed = false;
+    for (int i = 0; i < 20 && !is_killed; ++i) // it may end before we look
+        is_killed = kill_when_kept(text, "killed.srp.srk");
+    EXPECT(is_killed);
     snprintf(text, sizeof text, "%s -o killed.srp --resume", part);
     run_expecting(0, text);
     expect_same_file("uncut.srp", "killed.srp");

@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 static const char *in_folder(const char *name)
@@ -25,19 +26,37 @@ static void redirect(int fd, const char *path, int flags)
     close(file);
 }
 
+/* Words end at blanks, but for those of folders that stand in them. */
+static int split(char *text, char **words, int most)
+{
+    const char *const folders[] = {SR_TEST_SOURCE_DIR, SR_TEST_REFERENCE_DIR, test_folder()};
+    int count = 0;
+    for (char *p = text; *p && count < most;) {
+        p += strspn(p, " ");
+        if (*p)
+            words[count++] = p;
+        while (*p && *p != ' ') {
+            size_t step = 1;
+            for (size_t i = 0; i < sizeof folders / sizeof *folders; ++i)
+                if (strncmp(p, folders[i], strlen(folders[i])) == 0)
+                    step = strlen(folders[i]);
+            p += step;
+        }
+        if (*p)
+            *p++ = 0;
+    }
+    return count;
+}
+
 static pid_t start_with(const char *arguments, const char *input)
 {
     if (access(SR_TEST_COMMAND, X_OK) != 0)
         test_fail(__FILE__, __LINE__, "%s is not there: build it first", SR_TEST_COMMAND);
     char words[4096], out[512], err[512], *argv[128] = {(char[]){"steradian"}};
-    int count = 1;
     snprintf(words, sizeof words, "%s", arguments);
     snprintf(out, sizeof out, "%s", in_folder("said.out"));
     snprintf(err, sizeof err, "%s", in_folder("said.err"));
-    char *state;
-    for (char *word = strtok_r(words, " ", &state); word && count < 127; word = strtok_r(NULL, " ", &state))
-        argv[count++] = word;
-    argv[count] = NULL;
+    argv[1 + split(words, argv + 1, 126)] = NULL;
     const char *folder = test_folder();
     pid_t pid = fork();
     if (pid == 0) {
@@ -60,6 +79,34 @@ static void slurp(const char *name, char text[MAX_SAID])
     text[n] = 0;
     if (file)
         fclose(file);
+}
+
+/* From the mask of /proc/PID/status; where there is none, time must do. What has ended catches nothing any more. */
+static bool is_caught(pid_t pid, int number)
+{
+    char path[64], line[256];
+    unsigned long long mask = 0;
+    snprintf(path, sizeof path, "/proc/%ld/status", (long)pid);
+    FILE *file = fopen(path, "r");
+    if (!file) {
+        sleep(2);
+        return true;
+    }
+    bool has_ended = false;
+    while (fgets(line, sizeof line, file)) {
+        has_ended |= strncmp(line, "State:\tZ", 8) == 0;
+        if (sscanf(line, "SigCgt: %llx", &mask) == 1)
+            break;
+    }
+    fclose(file);
+    return has_ended || (mask >> (number - 1) & 1);
+}
+
+void wait_until_caught(pid_t pid, int number)
+{
+    double start_s = sr_clock_s();
+    while (!is_caught(pid, number) && sr_clock_s() - start_s < TEST_FOREVER_S)
+        nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
 }
 
 const struct said *finish(pid_t pid)

@@ -24,6 +24,8 @@ const struct said *run(const char *arguments, const char *input);
 const struct said *run_expecting(int code, const char *arguments);
 /* Starts it and returns at once; output goes to the files "out" and "err" of the test's folder. */
 pid_t start(const char *arguments);
+/* Waits until it catches the signal; before, that would end it. */
+void wait_until_caught(pid_t pid, int number);
 /* Waits for it. */
 const struct said *finish(pid_t pid);
 

@@ -22,6 +22,9 @@ AttributeEnd
 """
 
 
+FOREVER_S = 900  # [s] what takes longer never comes: no machine is so slow, nor so busy
+
+
 class Wrong(Exception):
     pass
 
@@ -29,6 +32,20 @@ class Wrong(Exception):
 def expect(condition, what):
     if not condition:
         raise Wrong(what)
+
+
+def wait_until_caught(job, number):
+    """Until the process catches the signal, which would end it before; or has ended."""
+    until = time.monotonic() + FOREVER_S
+    while job.poll() is None and time.monotonic() < until:
+        try:
+            caught = re.search(r"^SigCgt:\s*(\w+)", pathlib.Path(f"/proc/{job.pid}/status").read_text(), re.MULTILINE)
+        except OSError:  # not Linux
+            time.sleep(1)
+            return
+        if caught and int(caught.group(1), 16) >> number - 1 & 1:
+            return
+        time.sleep(0.002)
 
 
 def scene_of(path, film=None, world=""):
