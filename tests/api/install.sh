@@ -16,7 +16,7 @@ prefix=$folder/prefix
 for file in bin/steradian include/steradian/steradian.h; do
     [ -f "$prefix/$file" ] || { echo "failed: $file is not installed" >&2; exit 1; }
 done
-grep -rl "$build_dir\|$source_dir" "$prefix/include" "$prefix"/lib*/cmake "$prefix"/lib*/pkgconfig 2>/dev/null && {
+grep -rlwF -e "$build_dir" -e "$source_dir" "$prefix/include" "$prefix"/lib*/cmake "$prefix"/lib*/pkgconfig 2>/dev/null && {
     echo "failed: installed files tell where they were built" >&2
     exit 1
 }
@@ -39,16 +39,23 @@ if [ "$shared" = OFF ] && command -v objdump >/dev/null && objdump -h "$libdir/l
     exit 1
 fi
 
+# the command that is told, with what pkg-config tells, which escapes blanks in paths for a shell
+with_package() {
+    # shellcheck disable=SC2086 # a list of words
+    eval "set -- \"\$@\" $(pkg-config --cflags --libs $static steradian) -lm"
+    "$@"
+}
 cp "$consumer/consumer.c" "$folder/consumer.cpp"
 echo "== pkg-config, C"
-# shellcheck disable=SC2046,SC2086 # lists of words
-"$cc" -std=c17 -Wall -Wextra -Werror $flags -o "$folder/consumer_c" "$consumer/consumer.c" $(pkg-config --cflags --libs $static steradian) -lm
+# shellcheck disable=SC2086 # a list of words
+with_package "$cc" -std=c17 -Wall -Wextra -Werror $flags -o "$folder/consumer_c" "$consumer/consumer.c"
 "$folder/consumer_c" "$scene"
-"$cc" -std=c17 -Wall -Wextra -Werror $flags -o "$folder/brdf" "$source_dir/examples/brdf.c" $(pkg-config --cflags --libs $static steradian) -lm
+# shellcheck disable=SC2086
+with_package "$cc" -std=c17 -Wall -Wextra -Werror $flags -o "$folder/brdf" "$source_dir/examples/brdf.c"
 "$folder/brdf"
 echo "== pkg-config, C++"
-# shellcheck disable=SC2046,SC2086
-"$cxx" -std=c++17 -Wall -Wextra -Werror $flags -o "$folder/consumer_cxx" "$folder/consumer.cpp" $(pkg-config --cflags --libs $static steradian)
+# shellcheck disable=SC2086
+with_package "$cxx" -std=c++17 -Wall -Wextra -Werror $flags -o "$folder/consumer_cxx" "$folder/consumer.cpp"
 "$folder/consumer_cxx" "$scene"
 
 echo "== CMake, C and C++"

@@ -22,7 +22,7 @@ static char *drain(FILE *file)
 
 TEST(format_reference_is_up_to_date)
 {
-    FILE *now = popen(SR_TEST_COMMAND " formats --markdown", "r"),
+    FILE *now = popen("'" SR_TEST_COMMAND "' formats --markdown", "r"),
          *kept = fopen(SR_TEST_SOURCE_DIR "/docs/format.md", "rb");
     if (!now || !kept)
         test_fail(__FILE__, __LINE__, "the reference cannot be read");

@@ -194,8 +194,8 @@ TEST(output_spares_devices_and_foreign_files)
     unlink(path);
 
     if (access("/dev/full", W_OK) == 0) { // what is printed, too
-        EXPECT_EQUAL_INT(WEXITSTATUS(system(SR_TEST_COMMAND " brdf list >/dev/full 2>/dev/null")), 4);
-        EXPECT_EQUAL_INT(WEXITSTATUS(system(SR_TEST_COMMAND " info " CORNELL " >/dev/full 2>/dev/null")), 4);
+        EXPECT_EQUAL_INT(WEXITSTATUS(system("'" SR_TEST_COMMAND "' brdf list >/dev/full 2>/dev/null")), 4);
+        EXPECT_EQUAL_INT(WEXITSTATUS(system("'" SR_TEST_COMMAND "' info '" CORNELL "' >/dev/full 2>/dev/null")), 4);
     }
     put_file("notes.txt", "words\n");
     EXPECT_SAYS(run_expecting(3, "render " CORNELL " --spp 1 -o ok.pfm --checkpoint notes.txt")->err, "no checkpoint");
