@@ -23,7 +23,8 @@ static void redirect(int fd, const char *path, int flags)
     int file = open(path, flags, 0666);
     if (file < 0 || dup2(file, fd) < 0)
         _exit(126);
-    close(file);
+    if (file != fd) // it is where that was closed
+        close(file);
 }
 
 /* Words end at blanks, but for those of folders that stand in them. */
