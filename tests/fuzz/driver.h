@@ -11,9 +11,12 @@
 #ifndef SR_TESTS_FUZZ_DRIVER_H
 #define SR_TESTS_FUZZ_DRIVER_H
 
+#include "fuzz/watch.h"
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
+    watch_input();
     judge(data, size);
     return 0;
 }
@@ -88,6 +91,7 @@ int main(int count, char **words)
         if (!exact)
             return 4;
         memcpy(exact, damaged.data, damaged.size);
+        watch_input();
         judge(exact, damaged.size);
         free(exact);
     }

@@ -6,6 +6,7 @@
  * it is cut (0: nowhere), then eight at a time a place and what stands there. With libFuzzer this is its target;
  * without, a driver of our own makes the damage for the seconds that are told: fuzz_nanovdb SECONDS [RANDOM SEED]. */
 #include "base/base.h"
+#include "fuzz/watch.h"
 #include "medium/sparse.h"
 #include "sample/sample.h"
 #include "unit/medium/nanovdb_writer.h"
@@ -88,6 +89,7 @@ static void judge(const uint8_t *input, size_t size)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
+    watch_input();
     judge(data, size);
     return 0;
 }
@@ -152,6 +154,7 @@ int main(int count, char **words)
     judge((const uint8_t[4]){0}, 4);
     for (; sr_clock_s() - start < seconds; ++runs) {
         uint8_t input[128];
+        watch_input();
         judge(input, make_damage(input, &rng));
     }
     printf("nanovdb: %llu files in %.0f s, no finding\n", (unsigned long long)runs, seconds);
