@@ -14,11 +14,11 @@ import sys
 import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-SCENE = ROOT / "scenes" / "cornell-box.pbrt"
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "soak"))
+from common import FOREVER_S, SCENE, Wrong, children_of, expect
+
 # Open MPI keeps what it has allocated: to look for leaks would find its own
 ENVIRONMENT = {**os.environ, "ASAN_OPTIONS": "detect_leaks=0", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-FOREVER_S = 900  # [s] what takes longer never comes: no machine is so slow, nor so busy
 MOST_S = 5  # [s] from a rank's death to the end of the job
 CASES = {  # films and estimators that travel differently
     "path": (["--spp", "8"], [2, 3]),
@@ -31,15 +31,6 @@ CASES = {  # films and estimators that travel differently
 }
 
 
-class Wrong(Exception):
-    pass
-
-
-def expect(condition, what):
-    if not condition:
-        raise Wrong(what)
-
-
 def hash_of(path):
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
@@ -50,7 +41,7 @@ class Programs:
         self.mpirun = ["mpirun", "--oversubscribe", "--quiet"]
 
     def run(self, command, code=0):
-        done = subprocess.run(command, capture_output=True, text=True, env=ENVIRONMENT, cwd=self.folder, timeout=FOREVER_S, check=False)
+        done = subprocess.run(command, capture_output=True, encoding="utf-8", env=ENVIRONMENT, cwd=self.folder, timeout=FOREVER_S, check=False)
         expect(done.returncode == code, f"exit code {done.returncode}, not {code}: {' '.join(map(str, command))}\n{done.stdout}{done.stderr}")
         return done.stdout + done.stderr
 
@@ -87,14 +78,21 @@ def rehearsal(p):
     log = p.folder / "rehearsal.tsv"
     lines = ["%d\t%d\t%d\t%d\t16\t16\t0\t%.6f\t0" % (t, b, 16 * (t % 8), 16 * (t // 8), 0.002 + 0.0001 * (t * 37 % 64)) for t in range(64) for b in range(4)]
     log.write_text("\n".join(lines) + "\n")
-    real = p.run([*p.mpirun, "-n", "3", str(folder / "rehearse-ranks"), str(log)]).split("\t")
     told = p.run([str(folder / "simulate-ranks"), str(log), "--ranks", "3", "--tsv"]).splitlines()[1].split("\t")
-    (time_s, messages, sent_B), (told_s, told_messages, told_B) = ([float(row[i]) for i in (2, 4, 5)] for row in (real, told))
-    expect(time_s > 0.97 * told_s, f"{time_s} s, though {told_s} s were foretold")
-    expect(0.6 * told_B < sent_B < 1.4 * told_B, f"{sent_B} bytes, {told_B} foretold")
-    if time_s < 1.1 * told_s:
-        expect(abs(messages - told_messages) <= 0.2 * told_messages, f"{messages} messages, {told_messages} foretold")
-    print(f"a rehearsal: {time_s:.3f} s, {told_s:.3f} s foretold; {messages:.0f} messages, {told_messages:.0f}; {sent_B / 1e6:.2f} MB, {told_B / 1e6:.2f} MB")
+    told_s, told_messages, told_B = (float(told[i]) for i in (2, 4, 5))
+    unlike = None
+    for _ in range(5):
+        real = p.run([*p.mpirun, "-n", "3", str(folder / "rehearse-ranks"), str(log)]).split("\t")
+        time_s, messages, sent_B = (float(real[i]) for i in (2, 4, 5))
+        said = f"{time_s:.3f} s, {told_s:.3f} s foretold; {messages:.0f} messages, {told_messages:.0f}; {sent_B / 1e6:.2f} MB, {told_B / 1e6:.2f} MB"
+        expect(time_s > 0.97 * told_s, said)
+        if abs(messages - told_messages) <= 0.2 * told_messages and abs(sent_B - told_B) < 0.4 * told_B:
+            print(f"a rehearsal: {said}")
+            return
+        if time_s < 1.1 * told_s:  # else the machine was busy, and ranks came late
+            unlike = said
+    expect(unlike is None, f"never as foretold: {unlike}")
+    print(f"a rehearsal, by a machine that is too busy for it: {said}")
 
 
 def refusals(p):
@@ -149,9 +147,9 @@ def stopped(p, options, how):
         time.sleep(0.02)
     start = time.monotonic()
     if how.startswith("kill"):
-        children = subprocess.run(["pgrep", "-P", str(job.pid)], capture_output=True, text=True, check=False).stdout.split()
-        if children:
-            os.kill(int(children[-1]), signal.SIGKILL)
+        ranks = children_of(job)
+        if ranks:
+            os.kill(ranks[-1], signal.SIGKILL)
     else:
         job.terminate()
     code = job.wait(timeout=FOREVER_S)

@@ -34,6 +34,19 @@ def expect(condition, what):
         raise Wrong(what)
 
 
+def children_of(job):
+    """The processes that the process has begun, as they began; so mpirun's are its ranks."""
+    children = []
+    for path in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = path.read_text(errors="replace").rpartition(")")[2].split()  # behind the name, which may hold anything
+        except OSError:  # it has ended
+            continue
+        if int(fields[1]) == job.pid and fields[0] != "Z":
+            children.append(int(path.parent.name))
+    return sorted(children)
+
+
 def wait_until_caught(job, number):
     """Until the process catches the signal, which would end it before; or has ended."""
     until = time.monotonic() + FOREVER_S

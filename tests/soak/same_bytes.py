@@ -20,7 +20,7 @@ import signal
 import subprocess
 import time
 
-from common import FOREVER_S, SMOKE, SPECTRA, expect, run, scene_of
+from common import FOREVER_S, SMOKE, SPECTRA, children_of, expect, run, scene_of
 
 SIZE, SLOW_SIZE = "37,30", "19,14"  # no multiples of a tile
 THREADS, TILES, RANKS = [1, 2, 3, 7], [5, 8, 16], [1, 2, 3, 4]
@@ -138,7 +138,7 @@ class Programs:
         self.mpirun = ["mpirun", "--oversubscribe", "--quiet"]
 
     def run(self, command):
-        done = subprocess.run(command, capture_output=True, text=True, env=ENVIRONMENT, cwd=self.folder, timeout=FOREVER_S, check=False)
+        done = subprocess.run(command, capture_output=True, encoding="utf-8", env=ENVIRONMENT, cwd=self.folder, timeout=FOREVER_S, check=False)
         return done.returncode, done.stdout, done.stderr
 
 
@@ -203,11 +203,6 @@ class Tally:
         return self
 
 
-def ranks_of(job):
-    done = subprocess.run(["pgrep", "-P", str(job.pid)], capture_output=True, text=True, check=False)
-    return [int(pid) for pid in done.stdout.split()]
-
-
 def kill(picture, chance, job, n):
     """SIGKILL to a rank, or to the process alone. How long the job then lived [s]; None: it was through before."""
     time.sleep(chance.uniform(0.05, 1.2 * picture.seconds / max(1, min(n, 2))))
@@ -215,7 +210,7 @@ def kill(picture, chance, job, n):
         until = time.monotonic() + FOREVER_S
         while not picture.keep.exists() and job.poll() is None and time.monotonic() < until:
             time.sleep(0.01)
-    victims = ranks_of(job) if n else [job.pid]
+    victims = children_of(job) if n else [job.pid]
     if job.poll() is not None or not victims:
         return None
     start = time.monotonic()
@@ -241,7 +236,7 @@ def kills(picture, chance, count):
             t.steps += 1
             more = ["--resume", "--checkpoint-interval", "0.05", *who(chance)]
             command = picture.ranks(n, *more) if n else picture.alone(*more)
-            job = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT, cwd=picture.p.folder)
+            job = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8", env=ENVIRONMENT, cwd=picture.p.folder)
             took = kill(picture, chance, job, n) if t.lone + len(t.took) < count and step < 6 else None
             if took is None:
                 out, err = job.communicate(timeout=FOREVER_S) if job.returncode is None else (None, "")
