@@ -145,7 +145,7 @@ MUTANTS = [
 
 def edit(root, mutant):
     """The file's text with the mutant's edit, or None."""
-    text = (root / "src" / mutant.file).read_text()
+    text = (root / "src" / mutant.file).read_text(encoding="utf-8")
     return text.replace(mutant.old, mutant.new) if text.count(mutant.old) == 1 else None
 
 
@@ -185,10 +185,10 @@ def hunt(root, build, names):
             sys.exit(f"{test}: does not pass without any mutant (or does not compile)")
     for m in hunted:
         file, begin = copy / "src" / m.file, time.time()
-        text = file.read_text()
-        file.write_text(edit(copy, m))
+        text = file.read_text(encoding="utf-8")
+        file.write_text(edit(copy, m), encoding="utf-8")
         verdict = {None: "does not compile", True: "SURVIVES", False: "caught"}[passes(build, m.test)]
-        file.write_text(text)
+        file.write_text(text, encoding="utf-8")
         caught += verdict == "caught"
         print(f"{verdict:10} {m.name} (src/{m.file}; {m.test}; {time.time() - begin:.0f} s)", flush=True)
     print(f"{caught} of {len(hunted)} mutants caught")
