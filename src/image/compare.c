@@ -31,13 +31,13 @@ static bool is_error_channel(const char *name)
     return strncmp(name, "SE.", 3) == 0 || strncmp(name, "stderr.", 7) == 0;
 }
 
-/* The square of a standard error [unit^2]; 0 where there is none. */
+/* The square of a standard error [unit^2]; 0 where the picture tells none, not finite where it does not know it. */
 static double variance_at(const struct sr_image *image, uint32_t x, uint32_t y, int channel)
 {
     if (channel < 0)
         return 0;
     double e = (double)sr_image_value(image, sr_image_index(image, x, y) + (size_t)channel, (uint32_t)channel);
-    return isfinite(e) ? e * e : 0;
+    return e * e;
 }
 
 struct sums {
@@ -59,7 +59,7 @@ static void add_pixel(struct sr_image_difference *r, struct sums *s, double a, d
         r->max_x = x;
         r->max_y = y;
     }
-    if (!(variance > 0))
+    if (!(variance > 0 && isfinite(variance))) // of one sample nobody knows the error: that is no error of 0
         return;
     double z = d / sqrt(variance);
     r->z_count++;
@@ -110,7 +110,8 @@ static void compare_channel(const struct sr_image *a, const struct sr_image *b, 
         r->bias = s.d / n;
         r->rmse = sqrt(s.d2 / n);
         r->rel_mse = rel_mse(a, b, ca, cb, r->mean_b, r->count);
-    }
+    } else
+        r->mean_a = r->mean_b = r->mean_ratio = r->bias = r->rmse = r->rel_mse = r->max_difference = NAN;
     r->has_z = r->z_count > 0;
     if (r->has_z) {
         double nz = (double)r->z_count;

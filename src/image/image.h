@@ -142,10 +142,10 @@ sr_status sr_image_tone_map(const struct sr_image *image, const struct sr_tone *
 /* ---- statistics ---- */
 
 struct sr_image_statistics {
-    uint64_t count;                   // [1] pixels with finite values; all but the last four concern only these
-    double mean, deviation, min, max; // [unit of the channel]
+    uint64_t count; // [1] pixels with finite values; all but the last four concern only these, and of none are NaN
+    double mean, deviation, min, max;                                               // [unit of the channel]
     double percentile_1, percentile_5, percentile_50, percentile_95, percentile_99; // [unit of the channel]
-    double sum;                                                                     // [unit of the channel]
+    double sum;                                                                     // [unit of the channel] of none: 0
     uint64_t nan_count, infinite_count, negative_count, zero_count;                 // [1]
 };
 /* Of one channel; bytes are decoded to linear. */
@@ -159,16 +159,16 @@ sr_status sr_image_statistics(const struct sr_image *image, uint32_t channel, st
  * finite are left out and counted. */
 struct sr_image_difference {
     char name[64], unit[32];
-    uint64_t count, skipped_count; // [1] pixels compared, and left out
+    uint64_t count, skipped_count; // [1] pixels compared, and left out; where none is compared what follows is NaN
     double mean_a, mean_b;         // [unit]
     double mean_ratio;             // [1] mean_a / mean_b
     double bias;                   // [unit] mean of d
     double rmse;                   // [unit] root of the mean of d^2
     double rel_mse;                // [1] mean of d^2 / (b^2 + 0.01 mean_b^2)
     double max_difference;         // [unit] largest |d|
-    uint32_t max_x, max_y;         // [pixel] where
-    bool has_z;       // a or b has standard errors: z = d / sqrt(SE_a^2 + SE_b^2), one that is missing counts as 0
-    uint64_t z_count; // [1] pixels with a standard error above 0
+    uint32_t max_x, max_y;         // [pixel] where, if any was compared
+    bool has_z; // a or b has standard errors: z = d / sqrt(SE_a^2 + SE_b^2), a channel that is missing counts as 0
+    uint64_t z_count; // [1] pixels with a standard error above 0, and none that is not finite
     double mean_z;    // [1] mean of d over its standard error, pixels taken as independent
     double share_above_2, share_above_3, share_above_4; // [1] of z_count; Gaussian noise: 0.0455, 0.0027, 0.0000633
     double max_z;                                       // [1] largest |z|

@@ -27,6 +27,8 @@ sr_status sr_image_statistics(const struct sr_image *image, uint32_t channel, st
                               struct sr_error *error)
 {
     struct sr_image_statistics s = {0};
+    s.mean = s.deviation = s.min = s.max = NAN;
+    s.percentile_1 = s.percentile_5 = s.percentile_50 = s.percentile_95 = s.percentile_99 = NAN;
     *statistics = s;
     if (channel >= image->channel_count)
         return sr_fail(error, SR_ERROR_USAGE, "the image has %u channels, number %u was asked for",

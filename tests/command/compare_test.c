@@ -85,6 +85,56 @@ TEST(compare_refuses_what_cannot_be_compared)
     EXPECT_EQUAL_INT(count_files("left"), 0);
 }
 
+TEST(compare_refuses_numbers_of_different_units)
+{
+    render_pair();
+    struct sr_image *image = get_image("s2.exr");
+    sr_image_set_unit(image, (uint32_t)sr_image_find_channel(image, "G"), "W/(m^2 sr)");
+    char path[512];
+    struct sr_error error = {0};
+    snprintf(path, sizeof path, "%s/watts.exr", test_folder());
+    EXPECT(sr_image_write(path, image, NULL, &error) == SR_OK);
+    sr_image_free(image);
+    EXPECT_SAYS(run_expecting(3, "compare s1.exr watts.exr")->err,
+                "s1.exr has G in cd/m^2 and watts.exr has it in W/(m^2 sr)");
+    run_expecting(0, "compare s1.exr watts.exr --channel R");
+}
+
+TEST(compare_knows_no_noise_of_single_samples)
+{
+    render_pair();
+    run_expecting(0, "render " CORNELL " --resolution 32,32 --spp 1 -o one.exr -q");
+    EXPECT_SAYS(run_expecting(3, "compare one.exr s1.exr --max-z 4")->err, "standard errors");
+}
+
+TEST(pictures_without_a_finite_pixel_have_no_mean)
+{
+    struct sr_image *image = NULL;
+    render_pair();
+    image = get_image("s1.exr");
+    for (size_t i = 0; i < (size_t)image->width * image->height * image->channel_count; ++i)
+        image->floats[i] = NAN;
+    char path[512];
+    struct sr_error error = {0};
+    snprintf(path, sizeof path, "%s/none.exr", test_folder());
+    EXPECT(sr_image_write(path, image, NULL, &error) == SR_OK);
+    sr_image_free(image);
+    static const char *const commands[] = {"image none.exr --json", "info none.exr --json",
+                                           "compare none.exr none.exr --json"};
+    for (int i = 0; i < 3; ++i) {
+        json_t *j = json_of(run_expecting(0, commands[i]));
+        const json_t *channel = json_array_get(json_object_get(j, "channels"), 0);
+        const json_t *mean = json_object_get(channel, i == 2 ? "mean_a" : "mean");
+        EXPECT(json_is_null(i == 2 ? json_object_get(mean, "value") : mean));
+        json_decref(j);
+    }
+    json_t *j = json_of(run_expecting(0, "image none.exr --statistics --json"));
+    const json_t *L = json_object_get(json_object_get(j, "values"), "L_v");
+    EXPECT(json_is_null(json_object_get(L, "least")) && json_is_null(json_object_get(L, "least_at")));
+    json_decref(j);
+    EXPECT_SAYS(run_expecting(0, "image none.exr --statistics")->out, "no pixel is finite");
+}
+
 TEST(compare_counts_what_is_not_finite_as_a_failure)
 {
     render_pair();

@@ -152,6 +152,21 @@ static sr_status keep_chosen(const struct arguments *a, const struct sr_image *i
     return SR_OK;
 }
 
+/* Numbers of different units have no difference. */
+static sr_status check_units(const struct arguments *a, const struct sr_image *x, const struct sr_image *y,
+                             const struct sr_image_comparison *comparison, struct sr_error *error)
+{
+    for (uint32_t i = 0; i < comparison->channel_count; ++i) {
+        const char *name = comparison->channels[i].name;
+        const char *in_a = x->channels[sr_image_find_channel(x, name)].unit,
+                   *in_b = y->channels[sr_image_find_channel(y, name)].unit;
+        if (in_a[0] && in_b[0] && strcmp(in_a, in_b) != 0)
+            return sr_fail(error, SR_ERROR_INPUT, "%s has %s in %s and %s has it in %s: the same unit was expected",
+                           a->a, name, in_a, a->b, in_b);
+    }
+    return SR_OK;
+}
+
 /* ---- limits ---- */
 
 static const char *unit_of(const struct sr_image_difference *d)
@@ -198,8 +213,12 @@ static void print_table(const struct arguments *a, const struct sr_image *image,
     bool has_z = false;
     for (uint32_t i = 0; i < comparison->channel_count; ++i) {
         const struct sr_image_difference *d = &comparison->channels[i];
-        printf("%-12s %-9s %12.6g %12.6g %9.6f %12.6g %11.4g %12.6g  %u,%u", d->name, unit_of(d), d->mean_a, d->mean_b,
-               d->mean_ratio, d->rmse, d->rel_mse, d->max_difference, d->max_x, d->max_y);
+        printf("%-12s %-9s %12.6g %12.6g %9.6f %12.6g %11.4g %12.6g  ", d->name, unit_of(d), d->mean_a, d->mean_b,
+               d->mean_ratio, d->rmse, d->rel_mse, d->max_difference);
+        if (d->count)
+            printf("%u,%u", d->max_x, d->max_y);
+        else
+            printf("none");
         if (d->skipped_count)
             printf("; %llu pixels not finite, left out", (unsigned long long)d->skipped_count);
         putchar('\n');
@@ -233,6 +252,8 @@ static json_t *channel_json(const struct sr_image_difference *d)
         command_json_quantity(d->bias, unit), "rmse", command_json_quantity(d->rmse, unit), "rel_mse",
         command_json_quantity(d->rel_mse, "1"), "max_difference", command_json_quantity(d->max_difference, unit),
         "max_at", "x", (int)d->max_x, "y", (int)d->max_y, "unit", "pixel");
+    if (j && d->count == 0)
+        json_object_set_new(j, "max_at", json_null());
     if (j && d->has_z)
         json_object_set_new(j, "noise",
                             json_pack("{s:s, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o}", "unit", "1", "pixels",
@@ -286,7 +307,7 @@ static int compare(const struct arguments *a, const struct sr_image *x, const st
         sr_fail(&error, SR_ERROR_INPUT, "%s is %u x %u pixels and %s is %u x %u: the same size was expected", a->a,
                 x->width, x->height, a->b, y->width, y->height);
     bool ok = !error.status && sr_image_compare(x, y, &comparison, &error) == SR_OK &&
-              keep_chosen(a, x, &comparison, &error) == SR_OK;
+              keep_chosen(a, x, &comparison, &error) == SR_OK && check_units(a, x, y, &comparison, &error) == SR_OK;
     bool has_z = false;
     for (uint32_t i = 0; ok && i < comparison.channel_count; ++i)
         has_z |= comparison.channels[i].has_z;

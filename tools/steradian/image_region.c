@@ -131,6 +131,11 @@ static struct sr_quantity ratio_to_green(const struct form *forms, int count, in
     return q;
 }
 
+static json_t *pixel_json(const uint32_t at[2])
+{
+    return json_pack("[i,i]", (int)at[0], (int)at[1]);
+}
+
 int image_print_region(const char *const *files, int count, const struct image_region *region, bool as_json)
 {
     struct sr_error error = {0};
@@ -154,15 +159,19 @@ int image_print_region(const char *const *files, int count, const struct image_r
         const struct form *f = &forms[k]; // least and most: of the first picture
         struct sr_quantity q = quantity_of(forms, count, k, unit);
         char text[160];
+        bool has_any = f->least <= f->most;
         if (!as_json)
-            printf("%-4s mean %s; least %.6g at %u,%u; most %.6g at %u,%u\n", form_names[k],
-                   sr_quantity_text(NULL, &q, text, sizeof text), f->least, f->at_least[0], f->at_least[1], f->most,
+            printf("%-4s mean %s; ", form_names[k], sr_quantity_text(NULL, &q, text, sizeof text));
+        if (!as_json && has_any)
+            printf("least %.6g at %u,%u; most %.6g at %u,%u\n", f->least, f->at_least[0], f->at_least[1], f->most,
                    f->at_most[0], f->at_most[1]);
-        json_object_set_new(values, form_names[k],
-                            json_pack("{s:o, s:o, s:[i,i], s:o, s:[i,i]}", "mean", command_json_measured(&q), "least",
-                                      command_json_number(f->least), "least_at", (int)f->at_least[0],
-                                      (int)f->at_least[1], "most", command_json_number(f->most), "most_at",
-                                      (int)f->at_most[0], (int)f->at_most[1]));
+        else if (!as_json)
+            printf("no pixel is finite\n");
+        json_object_set_new(
+            values, form_names[k],
+            json_pack("{s:o, s:o, s:o, s:o, s:o}", "mean", command_json_measured(&q), "least",
+                      command_json_number(f->least), "least_at", has_any ? pixel_json(f->at_least) : json_null(),
+                      "most", command_json_number(f->most), "most_at", has_any ? pixel_json(f->at_most) : json_null()));
     }
     for (int k = R; k <= B && count > 1; k += B - R) {
         struct sr_quantity q = ratio_to_green(forms, count, k);

@@ -100,6 +100,46 @@ static void expect_rate(double share, double p, double n)
     EXPECT_NEAR(share, p, 4.9 * sqrt(p * (1 - p) / n));
 }
 
+/* A picture of one sample a pixel does not know its errors: they are not 0. */
+TEST(errors_that_are_not_known_tell_nothing_of_noise)
+{
+    static const char *const names[] = {"Y", "SE.Y"};
+    struct sr_image *a = make_image(2, 1, 2, names), *b = make_image(2, 1, 2, names);
+    float va[4] = {10, NAN, 7, 0.3f}, vb[4] = {5, 0.1f, 5, 0.4f};
+    memcpy(a->floats, va, sizeof va);
+    memcpy(b->floats, vb, sizeof vb);
+    struct sr_image_comparison c;
+    struct sr_error error = {0};
+    EXPECT(sr_image_compare(a, b, &c, &error) == SR_OK);
+    EXPECT(c.channels[0].count == 2 && c.channels[0].z_count == 1);
+    EXPECT_NEAR(c.channels[0].max_z, 4, 1e-6);
+    EXPECT_NEAR(c.channels[0].mean_z, 4, 1e-6);
+    sr_image_comparison_free(&c);
+    a->floats[3] = INFINITY;
+    EXPECT(sr_image_compare(a, b, &c, &error) == SR_OK);
+    EXPECT(!c.channels[0].has_z);
+    sr_image_comparison_free(&c);
+    sr_image_free(a);
+    sr_image_free(b);
+}
+
+TEST(pictures_without_a_finite_pixel_have_no_mean)
+{
+    static const char *const names[] = {"Y"};
+    struct sr_image *a = make_image(1, 1, 1, names);
+    a->floats[0] = NAN;
+    struct sr_image_comparison c;
+    struct sr_image_statistics s;
+    struct sr_error error = {0};
+    EXPECT(sr_image_compare(a, a, &c, &error) == SR_OK);
+    EXPECT(c.channels[0].count == 0 && isnan(c.channels[0].mean_a) && isnan(c.channels[0].rmse));
+    EXPECT(isnan(c.channels[0].max_difference));
+    sr_image_comparison_free(&c);
+    EXPECT(sr_image_statistics(a, 0, &s, &error) == SR_OK);
+    EXPECT(s.count == 0 && s.nan_count == 1 && isnan(s.mean) && isnan(s.min) && isnan(s.max) && isnan(s.percentile_50));
+    sr_image_free(a);
+}
+
 TEST(z_of_gaussian_noise_is_standard_normal)
 {
     struct sr_tally mean_z = {0};
