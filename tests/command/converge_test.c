@@ -49,6 +49,8 @@ TEST(converge_studies_a_meter_against_its_closed_form_and_leaves_out_who_is_blin
 
 TEST(converge_refuses_what_makes_no_sense)
 {
+    EXPECT_SAYS(run_expecting(2, "converge --integral disk-2d --samples 16:64:nan")->err, "--samples 16:64:nan");
+    EXPECT_SAYS(run_expecting(2, "converge --integral disk-2d --samples 16:64k")->err, "--samples 16:64k");
     EXPECT_SAYS(run_expecting(2, "converge --integral foo")->err, "--integral list");
     EXPECT_SAYS(run_expecting(2, "converge --integral disk-2d -e path")->err, "do not go with it");
     EXPECT_SAYS(run_expecting(2, "converge " CORNELL " -e path,maxdepth=2")->err, "--maxdepth");

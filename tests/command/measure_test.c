@@ -139,6 +139,13 @@ TEST(measure_says_what_is_wrong)
     EXPECT_SAYS(run_expecting(2, "measure " BENCH " --spectrum 400-700")->err, "LO:STEP:HI in nm was expected");
     EXPECT_SAYS(run_expecting(2, "measure " BENCH " --eror 1%")->err, "did you mean --error?");
     EXPECT_SAYS(run_expecting(2, "measure " BENCH " --points --list")->err, "do not go with them");
+    EXPECT_SAYS(run_expecting(2, "measure " BENCH " --fwhm 5")->err, "--spectrum LO:STEP:HI, which is missing");
+    EXPECT_SAYS(run_expecting(2, "measure " BENCH " --bandpass triangular")->err,
+                "--spectrum LO:STEP:HI, which is missing");
+    EXPECT_SAYS(run_expecting(2, "measure " BENCH " --spectrum 700:10:400")->err,
+                "wavelengths from 700 by 10 to 400 nm");
+    EXPECT_SAYS(run_expecting(2, "measure " BENCH " --balance --meter desk")->err, "--balance is of the whole scene");
+    EXPECT_SAYS(run_expecting(2, "measure " BENCH " --balance --error 1%")->err, "--balance is of the whole scene");
     EXPECT_SAYS(run_expecting(3, "measure " CORNELL)->err, "the scene has no meters");
     put_file(
         "dark.pbrt",

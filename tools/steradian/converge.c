@@ -78,10 +78,10 @@ static const struct option long_options[] = {
 static bool take_samples(struct converge_arguments *a, const char *text)
 {
     unsigned long long v[3] = {0, 0, 2};
-    char rest;
-    int n = sscanf(text, "%llu:%llu:%llu%c", &v[0], &v[1], &v[2], &rest);
-    if ((n == 2 || n == 3) && !strchr(text, '-') && v[0] >= 1 && v[1] > v[0] && v[1] <= 1u << 26 && v[2] >= 2 &&
-        v[2] <= 1024) {
+    int end[2] = {0, 0}; // behind A:B, and behind A:B:F
+    sscanf(text, "%llu:%llu%n:%llu%n", &v[0], &v[1], &end[0], &v[2], &end[1]);
+    if (text[0] && (end[1] ? !text[end[1]] : end[0] && !text[end[0]]) && !strchr(text, '-') && v[0] >= 1 &&
+        v[1] > v[0] && v[1] <= 1u << 26 && v[2] >= 2 && v[2] <= 1024) {
         a->first = v[0], a->last = v[1], a->factor = v[2], a->has_spp = true;
         return true;
     }

@@ -167,6 +167,7 @@ static bool take_value(struct measure_arguments *a, int option, const char *name
     case OPT_FWHM:
         return command_parse_float(c, name, text, 1e-3, 1000, &a->fwhm);
     case OPT_BANDPASS:
+        a->has_bandpass = true;
         a->bandpass = strcmp(text, "rectangular") == 0 ? SR_BAND_RECTANGULAR : SR_BAND_TRIANGULAR;
         if (a->bandpass == SR_BAND_RECTANGULAR || strcmp(text, "triangular") == 0)
             return true;
@@ -258,6 +259,14 @@ static int parse(int argc, char **argv, struct measure_arguments *a)
         return command_usage(
             &command_measure,
             "--budget measures the meters of a scene file by --samples: without --points, --rays, --balance, --spectrum, --colour, --error, --time, -o");
+    if (!a->has_spectrum && (!isnan(a->fwhm) || a->has_bandpass))
+        return command_usage(&command_measure,
+                             "--fwhm and --bandpass are those of --spectrum LO:STEP:HI, which is missing");
+    if (a->balance && (a->input != MEASURE_METERS || a->meter_count || a->outfile || a->has_spectrum || a->colour ||
+                       a->list || a->settings.error > 0 || a->settings.time_s > 0))
+        return command_usage(
+            &command_measure,
+            "--balance is of the whole scene, by --samples: without --points, --rays, --meter, --list, --spectrum, --colour, --error, --time, -o");
     if (a->input != MEASURE_METERS && strcmp(a->scene, "-") == 0)
         return command_usage(&command_measure,
                              "standard input cannot hold the scene and what is to be measured: expected a scene file");
@@ -288,8 +297,12 @@ sr_status measure_spectrometer(const struct measure_arguments *a, const struct s
     const struct sr_meter_common *c = sr_meter_common(meter);
     const float *l = c->lambda.data;
     *s = (struct sr_spectrometer){0};
-    if (a->has_spectrum)
-        return sr_spectrometer_prepare(a->spectrum[0], a->spectrum[1], a->spectrum[2], a->fwhm, a->bandpass, s, error);
+    if (a->has_spectrum) {
+        if (sr_spectrometer_prepare(a->spectrum[0], a->spectrum[1], a->spectrum[2], a->fwhm, a->bandpass, s, error) ==
+            SR_ERROR_INPUT)
+            error->status = SR_ERROR_USAGE; // these wavelengths are of no file
+        return error->status;
+    }
     if (c->reading != SR_READ_SPECTRUM)
         return SR_OK;
     bool is_given = c->lambda.count == 3;

@@ -23,6 +23,7 @@ struct measure_arguments {
     struct sr_spectrometer spectrometer; // asked for on the command line
     double spectrum[3], fwhm;            // [nm]
     enum sr_meter_bandpass bandpass;
+    bool has_bandpass;
     bool has_spectrum, colour, has_seed, list, balance, budget, json, quiet;
     uint64_t seed, threads;
     const char *sampler;
