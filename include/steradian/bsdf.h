@@ -69,7 +69,7 @@ struct sr_brdf_sample {
     bool is_mirror;
 };
 /* Draws count directions wi for as many wo from numbers u, each in [0, 1): first the choice of a lobe, then the
- * direction. */
+ * direction. Of other numbers nothing is drawn. */
 SR_API void sr_brdf_draw(const struct sr_brdf *brdf, double lambda_nm /* [nm] */, size_t count, const float (*wo)[3],
                          const float (*u)[3], struct sr_brdf_sample *samples);
 
@@ -83,12 +83,13 @@ struct sr_brdf_reflectance {
     double factor;    /* [1] reflectance factor: over that of a perfect diffuser in the same geometry */
 };
 /* From and to: "direction:THETA[,PHI]", "cone:THETA,PHI,HALF" or "hemisphere", in degrees. tolerance: relative, such as
- * 1e-6. */
+ * 1e-6, from 1e-14 to 0.1. */
 SR_API sr_status sr_brdf_reflectance(const struct sr_brdf *brdf, double lambda_nm /* [nm] */, const char *from,
                                      const char *to, double tolerance /* [1] */, struct sr_brdf_reflectance *out,
                                      char *error, size_t error_size);
 /* The share of light from wo, theta_deg from the normal at azimuth phi_deg, that is scattered at all: the
- * directional-hemispherical reflectance, plus transmittance. By sampling; *standard_error may be NULL. */
+ * directional-hemispherical reflectance, plus transmittance. By sampling; *standard_error may be NULL. NaN is what
+ * nobody can know: the share of no samples, the error of one. */
 SR_API double sr_brdf_albedo(const struct sr_brdf *brdf, double lambda_nm /* [nm] */, double theta_deg /* [deg] */,
                              double phi_deg /* [deg] */, uint32_t samples, double *standard_error /* [1] */);
 

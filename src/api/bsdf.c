@@ -137,7 +137,11 @@ void sr_brdf_draw(const struct sr_brdf *brdf, double lambda_nm, size_t count, co
             sr_specimen_at(&brdf->specimen, SR_BLACK + (float)lambda_nm, (uint32_t)i, &at);
         struct sr_bsdf_sample s;
         samples[i] = (struct sr_brdf_sample){.pdf = 0};
-        if (sr_bsdf_sample(&at.bsdf, direction(wo[i]), u[i][0], (sr_vec2){u[i][1], u[i][2]}, SR_RADIANCE, &s))
+        bool is_sound = sr_is_finite(direction(wo[i]));
+        for (int k = 0; k < 3; ++k)
+            is_sound &= u[i][k] >= 0 && u[i][k] < 1;
+        if (is_sound &&
+            sr_bsdf_sample(&at.bsdf, direction(wo[i]), u[i][0], (sr_vec2){u[i][1], u[i][2]}, SR_RADIANCE, &s))
             samples[i] = (struct sr_brdf_sample){{s.wi.x, s.wi.y, s.wi.z}, s.f[0], s.pdf, s.lobe & SR_LOBE_SPECULAR};
     }
 }
@@ -150,9 +154,13 @@ sr_status sr_brdf_reflectance(const struct sr_brdf *brdf, double lambda_nm, cons
     struct sr_error e = {0};
     struct sr_beam beams[2];
     struct sr_reflectance r;
-    if (sr_beam_read(from, &beams[0], &e) == SR_OK && sr_beam_read(to, &beams[1], &e) == SR_OK &&
-        sr_reflectance_cubature(&brdf->specimen, SR_BLACK + (float)lambda_nm, &beams[0], &beams[1], tolerance, &r,
-                                &e) == SR_OK)
+    if (!(lambda_nm >= 100 && lambda_nm <= 20000))
+        sr_fail(&e, SR_ERROR_USAGE, "a wavelength of %g nm: 100 to 20000 was expected", lambda_nm);
+    else if (!(tolerance >= 1e-14 && tolerance <= 0.1))
+        sr_fail(&e, SR_ERROR_USAGE, "a tolerance of %g: 1e-14 to 0.1 was expected", tolerance);
+    else if (sr_beam_read(from, &beams[0], &e) == SR_OK && sr_beam_read(to, &beams[1], &e) == SR_OK &&
+             sr_reflectance_cubature(&brdf->specimen, SR_BLACK + (float)lambda_nm, &beams[0], &beams[1], tolerance, &r,
+                                     &e) == SR_OK)
         *out = (struct sr_brdf_reflectance){r.name, r.unit, r.value[0], r.error[0], r.factor[0]};
     return e.status == SR_OK ? SR_OK : api_tell(&e, error, error_size);
 }
@@ -165,7 +173,7 @@ double sr_brdf_albedo(const struct sr_brdf *brdf, double lambda_nm, double theta
     struct sr_rng rng = sr_rng_seed(1, samples);
     struct sr_tally t = {0};
     struct sr_specimen_at at;
-    for (uint32_t i = 0; i < samples; ++i) {
+    for (uint32_t i = 0; i < samples && sr_is_finite(wo); ++i) {
         if (i == 0 || brdf->is_random)
             sr_specimen_at(&brdf->specimen, SR_BLACK + (float)lambda_nm, i, &at);
         struct sr_bsdf_sample s;
@@ -174,8 +182,8 @@ double sr_brdf_albedo(const struct sr_brdf *brdf, double lambda_nm, double theta
         sr_tally_add(&t, is_drawn ? (double)(s.f[0] * fabsf(s.wi.z) / s.pdf) : 0);
     }
     if (standard_error)
-        *standard_error = sr_tally_standard_error(&t);
-    return t.mean;
+        *standard_error = t.n > 1 ? sr_tally_standard_error(&t) : NAN;
+    return t.n > 0 ? t.mean : NAN;
 }
 
 /* ---- the certificate ---- */

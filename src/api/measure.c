@@ -32,9 +32,6 @@ static sr_status settle(const struct sr_world *world, size_t index, const struct
 {
     *job = sr_render_job_of(&world->import);
     job->seed = o->has_seed ? o->seed : job->seed;
-    job->threads = o->threads;
-    job->lambda.lo = o->lambda_min_nm > 0 ? o->lambda_min_nm : job->lambda.lo;
-    job->lambda.hi = o->lambda_max_nm > 0 ? o->lambda_max_nm : job->lambda.hi;
     *s = (struct sr_measure_settings){.samples = o->samples,
                                       .replicates = o->replicates,
                                       .error = o->error,
@@ -46,14 +43,19 @@ static sr_status settle(const struct sr_world *world, size_t index, const struct
                        (unsigned)world->import.meter_count);
     if ((unsigned)o->system >= SR_SYSTEM_COUNT)
         return sr_fail(error, SR_ERROR_USAGE, "there is no system %d", (int)o->system);
-    if (api_check_lambda(job, error) != SR_OK || o->spectrum_count == 0)
+    if (api_settle(job, o->threads, o->lambda_min_nm, o->lambda_max_nm, error) != SR_OK || o->spectrum_count == 0)
         return error->status;
     double last = o->spectrum_first_nm + o->spectrum_step_nm * ((double)o->spectrum_count - 1);
     if (!o->spectrum)
         return sr_fail(error, SR_ERROR_USAGE, "a spectrum of %zu readings needs room for them", o->spectrum_count);
-    return sr_spectrometer_prepare(o->spectrum_first_nm, o->spectrum_step_nm, last,
-                                   o->spectrum_fwhm_nm > 0 ? o->spectrum_fwhm_nm : NAN, SR_BAND_TRIANGULAR,
-                                   &s->spectrometer, error);
+    if (!(o->spectrum_fwhm_nm >= 0 && o->spectrum_fwhm_nm <= 1000))
+        return sr_fail(error, SR_ERROR_USAGE, "a bandpass of %g nm: 0, for the step, to 1000 was expected",
+                       o->spectrum_fwhm_nm);
+    if (sr_spectrometer_prepare(o->spectrum_first_nm, o->spectrum_step_nm, last,
+                                o->spectrum_fwhm_nm > 0 ? o->spectrum_fwhm_nm : NAN, SR_BAND_TRIANGULAR,
+                                &s->spectrometer, error) == SR_ERROR_INPUT)
+        error->status = SR_ERROR_USAGE; // the wavelengths are the caller's, of no file
+    return error->status;
 }
 
 sr_status sr_world_measure(const struct sr_world *world, size_t index, const struct sr_measure_options *options,
@@ -94,8 +96,10 @@ sr_status sr_world_measure_map(const struct sr_world *world, size_t index, const
     struct sr_measure_settings s;
     struct sr_image *image;
     *picture = NULL;
-    if (settle(world, index, options ? options : &defaults, &job, &s, &e) == SR_OK &&
-        sr_measure_map(&job, &world->import.meters[index], &s, &image, &e) == SR_OK)
+    if (options && options->spectrum_count > 0)
+        sr_fail(&e, SR_ERROR_USAGE, "a map holds no spectra: spectrum_count of 0 was expected");
+    else if (settle(world, index, options ? options : &defaults, &job, &s, &e) == SR_OK &&
+             sr_measure_map(&job, &world->import.meters[index], &s, &image, &e) == SR_OK)
         api_wrap_image(image, picture, &e);
     return api_tell(&e, error, error_size);
 }

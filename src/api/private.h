@@ -19,7 +19,9 @@ sr_status api_tell(const struct sr_error *error, char *text, size_t size);
 /* Takes the image. */
 sr_status api_wrap_image(struct sr_image *image, struct sr_picture **picture, struct sr_error *error);
 
-/* 100 <= min < max <= 20000 */
-sr_status api_check_lambda(const struct sr_render_job *job, struct sr_error *error);
+/* What the caller says of threads and wavelengths [nm], each 0 for what the job has: 0 <= threads, and
+ * 100 <= min < max <= 20000. */
+sr_status api_settle(struct sr_render_job *job, int threads, float lambda_min_nm, float lambda_max_nm,
+                     struct sr_error *error);
 
 #endif

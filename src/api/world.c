@@ -44,8 +44,14 @@ void sr_world_destroy(struct sr_world *world)
     sr_free(world);
 }
 
-sr_status api_check_lambda(const struct sr_render_job *job, struct sr_error *error)
+sr_status api_settle(struct sr_render_job *job, int threads, float lambda_min_nm, float lambda_max_nm,
+                     struct sr_error *error)
 {
+    job->threads = threads;
+    job->lambda.lo = lambda_min_nm != 0 ? lambda_min_nm : job->lambda.lo; // NaN is no 0
+    job->lambda.hi = lambda_max_nm != 0 ? lambda_max_nm : job->lambda.hi;
+    if (threads < 0)
+        return sr_fail(error, SR_ERROR_USAGE, "%d threads: 0, for all processors, or more was expected", threads);
     if (job->lambda.lo >= 100 && job->lambda.lo < job->lambda.hi && job->lambda.hi <= 20000)
         return SR_OK;
     return sr_fail(error, SR_ERROR_USAGE, "wavelengths from %g to %g nm: 100 <= min < max <= 20000 was expected",
@@ -76,11 +82,8 @@ sr_status sr_world_render(const struct sr_world *world, const struct sr_render_s
     job.spp = s->spp ? s->spp : job.spp;
     job.replicates = s->replicates;
     job.seed = s->has_seed ? s->seed : job.seed;
-    job.threads = s->threads;
-    job.lambda.lo = s->lambda_min_nm > 0 ? s->lambda_min_nm : job.lambda.lo;
-    job.lambda.hi = s->lambda_max_nm > 0 ? s->lambda_max_nm : job.lambda.hi;
     job.with_aov = s->with_auxiliary;
-    if (api_check_lambda(&job, &e) != SR_OK)
+    if (api_settle(&job, s->threads, s->lambda_min_nm, s->lambda_max_nm, &e) != SR_OK)
         return api_tell(&e, error, error_size);
     if (s->progress) {
         job.progress = ask_caller;
@@ -105,7 +108,9 @@ sr_status sr_world_irradiance(const struct sr_world *world, const double point_m
                               uint32_t samples, uint32_t replicates, struct sr_quantity *E_v, struct sr_quantity *E_e)
 {
     struct sr_render_job job = sr_render_job_of(&world->import);
-    sr_vec3 p = sr_render_place(&job, point_m), n = {(float)normal[0], (float)normal[1], (float)normal[2]};
+    double length = hypot(hypot(normal[0], normal[1]), normal[2]);
+    sr_vec3 p = sr_render_place(&job, point_m),
+            n = {(float)(normal[0] / length), (float)(normal[1] / length), (float)(normal[2] / length)};
     if (samples < 1 || replicates < 2 || !sr_is_finite(p) || !sr_is_finite(n) || !(sr_length(n) > 0))
         return SR_ERROR_USAGE;
     struct sr_irradiance E = sr_render_irradiance(&job, p, n, samples, replicates);

@@ -36,6 +36,7 @@ struct sr_worker {
         shared; // what the integrator's begin has made for the picture; NULL: there is no picture, or nothing is shared
     void *held; // what of it this thread holds
     uint32_t replicate; // of the sample that is wanted now
+    uint32_t untold;    // samples since somebody was told of the progress
 };
 
 /* What an integrator may know of the picture before its first sample. */

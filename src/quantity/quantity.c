@@ -52,6 +52,8 @@ struct sr_quantity sr_quantity_jackknife(const double *rows, uint32_t replicates
 double sr_quantity_expanded(const struct sr_quantity *q, double level)
 {
     double p = 0.5 + level / 2;
+    if (!(level >= 0 && level <= 1))
+        return NAN;
     return (isinf(q->degrees) ? sr_normal_quantile(p) : sr_student_quantile(p, q->degrees)) * q->u;
 }
 

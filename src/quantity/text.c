@@ -75,7 +75,7 @@ char *sr_quantity_text(const char *name, const struct sr_quantity *q, char *text
         append(text, size, "%s%.2g%s (95 %%, one-sided: nothing was found)", name ? "" : "< ", q->upper, unit);
     else if (!isfinite(q->value))
         append(text, size, "%g%s (not a number that was measured)", q->value, unit);
-    else if (!isfinite(q->u) || !(q->degrees > 0))
+    else if (!(q->u >= 0 && isfinite(sr_quantity_expanded(q, 0.95))) || !(q->degrees > 0))
         append(text, size, "%.6g%s (uncertainty not known)", q->value, unit);
     else if (q->u == 0 && isinf(q->degrees))
         append(text, size, "%.9g%s (exact)", q->value, unit);

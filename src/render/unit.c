@@ -44,6 +44,17 @@ static void clip(const struct sr_render_pass *pass, uint64_t block_begin, uint32
     *end = hi < *end ? (uint32_t)hi : *end;
 }
 
+/* A unit may be hours of work: whoever wants to be told, or to stop, is asked while it is under way. */
+static void tell_now_and_then(struct run *run, struct sr_worker *worker, uint32_t samples)
+{
+    enum { SAMPLES = 1024 }; // so many that the clock and the lock cost nothing
+    worker->untold += samples;
+    if (worker->untold < SAMPLES)
+        return;
+    worker->untold = 0;
+    sr_run_tell_progress(run, atomic_load_explicit(&run->units_done, memory_order_relaxed));
+}
+
 /* The samples of one pixel in one block; false: cancelled, nothing of it counts. */
 static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, struct sr_block_tree *tree,
                        struct sr_splatting *splatting, struct sr_worker *worker)
@@ -90,6 +101,7 @@ static bool fill_block(struct run *run, uint32_t x, uint32_t y, uint32_t block, 
                 sr_film_block_add_first(b, &s->first);
             sr_block_tree_done(tree);
         }
+        tell_now_and_then(run, worker, count);
         if (!splatting && sr_run_is_cancelled(run))
             break;
     }

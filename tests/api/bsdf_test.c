@@ -118,3 +118,29 @@ TEST(lambert_has_a_certificate)
     EXPECT(verdicts[SR_BRDF_PASSED] >= 6 && verdicts[SR_BRDF_FAILED] == 0);
     sr_brdf_destroy(b);
 }
+
+TEST(what_nobody_can_know_is_not_a_number)
+{
+    struct sr_brdf *b = make("conductor alpha_x=.3 alpha_y=.3");
+    double error = 0;
+    EXPECT(isnan(sr_brdf_albedo(b, 550, 30, 0, 0, &error)) && isnan(error));
+    EXPECT(sr_brdf_albedo(b, 550, 30, 0, 1, &error) > 0 && isnan(error));
+    EXPECT(isnan(sr_brdf_albedo(b, 550, NAN, 0, 16, &error)) && isnan(error));
+
+    const float wo[1][3] = {{0.6f, 0, 0.8f}},
+                u[][3] = {
+                    {NAN, 0.5f, 0.5f}, {0.5f, NAN, 0.5f}, {0.5f, 0.5f, INFINITY}, {1, 0.5f, 0.5f}, {-1, 0.5f, 0.5f}};
+    for (size_t i = 0; i < sizeof u / sizeof u[0]; ++i) {
+        struct sr_brdf_sample s = {.pdf = 1};
+        sr_brdf_draw(b, 550, 1, wo, &u[i], &s);
+        EXPECT(s.pdf == 0);
+    }
+    struct sr_brdf_reflectance r;
+    char text[256] = "";
+    const double wrong[][2] = {{NAN, 1e-4}, {-1, 1e-4}, {550, 0}, {550, -1}, {550, NAN}, {550, INFINITY}};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; ++i)
+        EXPECT_EQUAL_INT(
+            sr_brdf_reflectance(b, wrong[i][0], "direction:30", "hemisphere", wrong[i][1], &r, text, sizeof text),
+            SR_ERROR_USAGE);
+    sr_brdf_destroy(b);
+}

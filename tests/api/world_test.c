@@ -375,3 +375,87 @@ TEST(pictures_come_back_from_files_as_they_were)
     sr_picture_destroy(picture);
     sr_world_destroy(world);
 }
+
+/* A unit of work may take hours, of few large tiles and many samples: whoever wants to stop is asked all the same. */
+static bool stop_and_count(void *user, double share)
+{
+    *(int *)user += 1;
+    EXPECT(share >= 0 && share <= 1);
+    return false;
+}
+
+TEST(a_render_of_endless_units_stops_when_it_is_asked_to)
+{
+    struct sr_world *world = load_floor_and_sky();
+    struct sr_picture *picture;
+    int asked = 0;
+    struct sr_render_settings settings = {.spp = UINT32_MAX, .progress = stop_and_count, .user = &asked};
+    EXPECT_EQUAL_INT(sr_world_render(world, &settings, &picture, NULL, 0), SR_CANCELLED);
+    EXPECT(asked >= 1 && picture);
+    sr_picture_destroy(picture);
+    sr_world_destroy(world);
+}
+
+static const char *metered(void)
+{
+    static char text[2048];
+    snprintf(text, sizeof text, "%s#@ Meter \"spherical\"\n", floor_and_sky);
+    return text;
+}
+
+TEST(threads_and_wavelengths_that_are_none_are_refused)
+{
+    struct sr_world *world = load(write_scene("metered.pbrt", metered()));
+    const struct sr_render_settings wrong[] = {{.threads = -1},
+                                               {.lambda_min_nm = NAN},
+                                               {.lambda_max_nm = NAN},
+                                               {.lambda_min_nm = -400},
+                                               {.lambda_max_nm = INFINITY}};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; ++i) {
+        char error[256] = "";
+        struct sr_picture *picture;
+        EXPECT_EQUAL_INT(sr_world_render(world, &wrong[i], &picture, error, sizeof error), SR_ERROR_USAGE);
+        EXPECT(!picture && strstr(error, "expected"));
+        struct sr_measure_options o = {.threads = wrong[i].threads,
+                                       .lambda_min_nm = wrong[i].lambda_min_nm,
+                                       .lambda_max_nm = wrong[i].lambda_max_nm};
+        struct sr_world_reading reading;
+        EXPECT_EQUAL_INT(sr_world_measure(world, 0, &o, &reading, error, sizeof error), SR_ERROR_USAGE);
+    }
+    sr_world_destroy(world);
+}
+
+TEST(spectra_that_make_no_sense_are_the_callers_fault)
+{
+    struct sr_world *world = load(write_scene("metered.pbrt", metered()));
+    struct sr_quantity spectrum[4];
+    const double wrong[][3] = {{400, -10, 0}, {400, 0, 0},    {NAN, 10, 0},
+                               {400, 10, -1}, {400, 10, NAN}, {400, 10, INFINITY}};
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; ++i) {
+        struct sr_measure_options o = {.spectrum_first_nm = wrong[i][0],
+                                       .spectrum_step_nm = wrong[i][1],
+                                       .spectrum_fwhm_nm = wrong[i][2],
+                                       .spectrum_count = 4,
+                                       .spectrum = spectrum};
+        struct sr_world_reading reading;
+        char error[256] = "";
+        EXPECT_EQUAL_INT(sr_world_measure(world, 0, &o, &reading, error, sizeof error), SR_ERROR_USAGE);
+        EXPECT(strstr(error, "expected"));
+    }
+    sr_world_destroy(world);
+}
+
+TEST(normals_may_have_any_length_but_zero)
+{
+    struct sr_world *world = load_floor_and_sky();
+    const double point[3] = {0, 0.5, 0}, length[] = {1, 1e-40, 1e-300, 3e38, 1e300};
+    struct sr_quantity E;
+    for (size_t i = 0; i < sizeof length / sizeof length[0]; ++i) {
+        const double normal[3] = {0, length[i], 0};
+        EXPECT_EQUAL_INT(sr_world_irradiance(world, point, normal, 64, 4, &E, NULL), SR_OK);
+        EXPECT_RELATIVE(E.value, 314.159, 0.02);
+    }
+    const double none[3] = {0, 0, 0};
+    EXPECT_EQUAL_INT(sr_world_irradiance(world, point, none, 64, 4, &E, NULL), SR_ERROR_USAGE);
+    sr_world_destroy(world);
+}

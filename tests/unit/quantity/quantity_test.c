@@ -281,3 +281,19 @@ TEST(the_jackknife_of_a_ratio_is_nearly_unbiased_and_covers)
     EXPECT(fabs(jackknifed.mean - 1) < 4.9 * sr_tally_standard_error(&jackknifed));
     EXPECT(covered > 0.935 * ROUNDS && covered < 0.97 * ROUNDS);
 }
+
+TEST(uncertainties_that_are_none_are_told_as_such)
+{
+    char text[96];
+    const struct sr_quantity odd[] = {{.value = 0, .u = -1, .degrees = INFINITY},
+                                      {.value = 1, .u = -1, .degrees = 15},
+                                      {.value = 1, .u = INFINITY, .degrees = 15},
+                                      {.value = 1, .u = 1e308, .degrees = 15},
+                                      {.value = 1, .u = 0.1, .degrees = NAN}};
+    for (size_t i = 0; i < sizeof odd / sizeof odd[0]; ++i)
+        EXPECT(strstr(sr_quantity_text("E", &odd[i], text, sizeof text), "uncertainty not known"));
+    const struct sr_quantity q = {.value = 1, .u = 0.1, .degrees = 15};
+    const double levels[] = {-1, 2, NAN};
+    for (size_t i = 0; i < sizeof levels / sizeof levels[0]; ++i)
+        EXPECT(isnan(sr_quantity_expanded(&q, levels[i])));
+}
