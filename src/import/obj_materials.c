@@ -295,8 +295,9 @@ void sr_obj_material_wear(struct sr_compose *c, struct sr_obj_material *m)
     c->where = m->where;
     if (!m->is_composed) {
         m->is_composed = true;
-        while (sr_pbrt_names_find(&c->d->material_names, m->name)) // an earlier material of the same name
-            m->name = sr_compose_printf(c, "%.900s'", m->name);
+        const char *name = m->name;
+        for (unsigned k = 2; sr_pbrt_names_find(&c->d->material_names, m->name) && c->error->status == SR_OK; ++k)
+            m->name = sr_compose_printf(c, "%.900s (%u)", name, k); // there is an earlier one of the same name
         bool is_glass = m->illum == 4 || m->illum == 6 || m->illum == 7 || m->illum == 9;
         bool is_metal =
             (is_black(m->Kd) && !m->map_Kd.path && !is_black(m->Ks) && m->Pm < 0) || (m->illum == 3 && is_black(m->Kd));

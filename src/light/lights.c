@@ -109,9 +109,11 @@ static sr_status build_choice(struct sr_arena *arena, struct sr_lights *l, struc
     }
     if (is_built && l->choice == SR_LIGHTS_POWER && c->choosable_count > 1)
         is_built = sr_alias_build(arena, weights, n, &c->alias);
-    c->area = before_blocks(arena, l, glowing_area);
-    c->emitted = before_blocks(arena, l, emitted_by);
-    is_built = is_built && c->area && c->emitted;
+    if (is_built) {
+        c->area = before_blocks(arena, l, glowing_area);
+        c->emitted = before_blocks(arena, l, emitted_by);
+        is_built = c->area && c->emitted;
+    }
     sr_free(choosable);
     sr_free(outside);
     sr_free(infinite);
@@ -140,8 +142,7 @@ static double with_more_bits(float u, sr_vec3 p)
     uint32_t bits[4];
     memcpy(&bits[0], &u, 4);
     memcpy(&bits[1], &p, 12);
-    uint32_t hash = sr_hash_combine(bits[0] ^ (bits[1] * 0x85ebca6bu), bits[2] ^ (bits[3] * 0xc2b2ae35u));
-    return (double)u + ((double)hash + 0.5) * 0x1p-56;
+    return sr_with_more_bits(u, sr_hash_combine(bits[0] ^ (bits[1] * 0x85ebca6bu), bits[2] ^ (bits[3] * 0xc2b2ae35u)));
 }
 
 bool sr_lights_pick_many(const struct sr_lights *lights, const struct sr_point *x, float u, uint32_t *index, float *pmf)
@@ -156,7 +157,7 @@ bool sr_lights_pick_many(const struct sr_lights *lights, const struct sr_point *
         return true;
     }
     if (lights->choice == SR_LIGHTS_POWER) {
-        *index = sr_alias_sample(&c->alias, u, pmf, NULL);
+        *index = sr_alias_sample(&c->alias, with_more_bits(u, x->p), pmf, NULL);
         return *pmf > 0;
     }
     double v = c->tree.node_count > 1 ? with_more_bits(u, x->p) : (double)u;

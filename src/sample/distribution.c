@@ -5,7 +5,8 @@
  *     piecewise: F(x) = INTEGRAL f,  x = F^-1(u),  pdf = f / INTEGRAL f                                [1/length]
  *
  * M. Vose, A Linear Algorithm for Generating Random Numbers with a Given Distribution, 1991. Weights that are negative
- * or no numbers count as zero. u has 24 bits, hence probabilities are granted in steps of 2^-24. */
+ * or no numbers count as zero. A float u has 24 bits and grants probabilities in steps of 2^-24: where outcomes are
+ * many, u wants more (sr_with_more_bits). */
 #include "sample/sample.h"
 
 static double weight(float w)
@@ -68,10 +69,9 @@ bool sr_alias_build(struct sr_arena *arena, const float *weights, uint32_t count
     return ok;
 }
 
-uint32_t sr_alias_sample(const struct sr_alias *a, float u, float *pmf, float *u_remapped)
+uint32_t sr_alias_sample(const struct sr_alias *a, double u, float *pmf, float *u_remapped)
 {
-    // in double: n u is exact
-    double scaled = (double)u * a->count;
+    double scaled = u * a->count; // exact where u is a float
     uint32_t i = (uint32_t)scaled;
     i = i < a->count ? i : a->count - 1;
     float fraction = (float)(scaled - i), threshold = a->threshold[i];

@@ -281,7 +281,12 @@ struct sr_alias {
 };
 bool sr_alias_build(struct sr_arena *arena, const float *weights, uint32_t count,
                     struct sr_alias *a); // false: all zero or no memory
-uint32_t sr_alias_sample(const struct sr_alias *a, float u, float *pmf, float *u_remapped); // NULL where not wanted
+uint32_t sr_alias_sample(const struct sr_alias *a, double u, float *pmf, float *u_remapped); // NULL where not wanted
+/* u in [0, 1) with bits of a hash below its own 24, which are too few to choose among very many outcomes */
+static inline double sr_with_more_bits(float u, uint32_t hash)
+{
+    return (double)u + ((double)hash + 0.5) * 0x1p-56;
+}
 
 /* Piecewise constant on [lo, hi]. A function that is zero everywhere gives the uniform density. */
 struct sr_piecewise1 {

@@ -20,7 +20,9 @@ static float draw(const void *self, sr_vec2 u, struct sr_point *x)
 {
     const struct surface *s = self;
     float pmf;
-    uint32_t i = sr_alias_sample(&s->alias, u.x, &pmf, &u.x);
+    uint32_t bits[2], i;
+    memcpy(bits, &u, sizeof bits);
+    i = sr_alias_sample(&s->alias, sr_with_more_bits(u.x, sr_hash_combine(bits[0], bits[1])), &pmf, &u.x);
     struct sr_shape_sample drawn;
     if (!s->parts[i].shape.model->sample(s->parts[i].shape.self, s->parts[i].primitive, NULL, u, &drawn))
         return 0;

@@ -5,6 +5,7 @@
 #include "import/polygon.h"
 #include "test.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static struct sr_arena data;
@@ -134,6 +135,30 @@ TEST(obj_groups_and_materials_make_shapes)
     EXPECT_EQUAL_INT(d.shapes.count, 2); // an unknown material is none
     EXPECT_EQUAL_TEXT(SR_PBRT_AT(d.shapes, struct sr_pbrt_shape, 1)->name, "b c");
     EXPECT_EQUAL_INT(warnings, 1);
+    release();
+}
+
+/* A library that is named again brings materials of names that are taken. Of long names all were once cut to one. */
+TEST(obj_materials_of_one_name_get_names_of_their_own)
+{
+    char name[960], library[1024], path[600], text[8192] = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    struct sr_error ignored = {0};
+    memset(name, 'a', sizeof name);
+    name[sizeof name - 1] = 0;
+    snprintf(path, sizeof path, "%s/names.mtl", test_folder());
+    int size = snprintf(library, sizeof library, "newmtl %s\nKd .1 .2 .3\n", name);
+    EXPECT(sr_file_write(path, library, (size_t)size, &ignored) == SR_OK);
+    for (int k = 0; k < 4; ++k) {
+        size_t n = strlen(text);
+        snprintf(text + n, sizeof text - n, "mtllib %s\nusemtl %s\nf 1 2 3\n", path, name);
+    }
+    EXPECT(read_as(false, text, strlen(text)) == SR_OK);
+    EXPECT_EQUAL_INT(d.shapes.count, 4);
+    EXPECT_EQUAL_INT(d.named_materials.count, 4);
+    for (size_t i = 0; i < d.named_materials.count; ++i)
+        for (size_t k = 0; k < i; ++k)
+            EXPECT(strcmp(SR_PBRT_AT(d.named_materials, struct sr_pbrt_entity, i)->name,
+                          SR_PBRT_AT(d.named_materials, struct sr_pbrt_entity, k)->name) != 0);
     release();
 }
 

@@ -117,6 +117,49 @@ TEST(probabilities_add_up_to_1_less_the_walks_that_end_in_the_dark)
         }
 }
 
+/* Of so many, each has 128 of the numbers of 24 bits: too few to grant a dim one its probability. */
+TEST(dim_lights_among_very_many_are_picked_as_often_as_their_power_says)
+{
+    enum { LIGHTS = 1 << 17, DRAWS = 2000000 };
+    const struct sr_light_model *m = sr_light_model_find("point");
+    struct sr_light of[2], *lights = sr_arena_alloc(&scenery_arena, LIGHTS * sizeof *lights);
+    for (int k = 0; k < 2; ++k) {
+        void *self = scenery_new(m);
+        SCENERY_FLOAT(m, self, "scale", k ? 0.002f : 1);
+        of[k] = scenery_finish(m, self);
+    }
+    for (uint32_t i = 0; i < LIGHTS; ++i)
+        lights[i] = of[i & 1];
+    struct sr_lights l = build(lights, LIGHTS, SR_LIGHTS_POWER);
+    struct sr_rng rng = sr_rng_seed(5, 1);
+    double observed[2] = {0}, expected[2] = {DRAWS / 1.002, DRAWS * 0.002 / 1.002};
+    for (int d = 0; d < DRAWS; ++d) {
+        struct sr_point x = random_receiver(&rng, 1, false);
+        uint32_t index;
+        float pmf;
+        EXPECT(sr_lights_pick(&l, &x, sr_rng_float(&rng), &index, &pmf));
+        observed[index & 1] += 1;
+    }
+    EXPECT_CHI2(observed, expected, 2);
+}
+
+/* The first allocation of the choice is refused as all others are. */
+TEST(lights_without_memory_are_an_error)
+{
+    const struct sr_light *lights = mixed_lights(3, 1, 1, 0.1f, false);
+    for (uint64_t k = 0; k < 20; ++k) {
+        struct sr_arena arena = {0};
+        struct sr_lights l;
+        struct sr_error error = {0};
+        sr_alloc_fail(k, 1);
+        sr_status status = sr_lights_build(&arena, lights, 3, SR_LIGHTS_POWER, &l, &error);
+        sr_alloc_fail(0, 0);
+        EXPECT(status == SR_OK || status == SR_ERROR_RESOURCE);
+        EXPECT(k > 0 || status == SR_ERROR_RESOURCE);
+        sr_arena_free(&arena);
+    }
+}
+
 TEST(lights_are_picked_in_proportion_to_their_area)
 {
     static const uint32_t counts[] = {1, 2, 31, 32, 33, 100, 300};
