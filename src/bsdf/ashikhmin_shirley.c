@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Anisotropic Phong: an elliptic highlight with Schlick's Fresnel, over a matte part that gives way to it at grazing.
  *
- *     f = sqrt((nx + 1)(ny + 1)) / (8 pi) (n.h)^((nx hx^2 + ny hy^2) / (1 - (n.h)^2)) F / (wo.h max(cos_theta_o,
- * cos_theta_i))
- *         + 28 / (23 pi) reflectance (1 - specular) (1 - (1 - cos_theta_i / 2)^5) (1 - (1 - cos_theta_o / 2)^5) [1/sr]
+ *     f = sqrt((nx + 1)(ny + 1)) / (8 pi) (n.h)^((nx hx^2 + ny hy^2) / (1 - (n.h)^2))
+ *         F / (wo.h max(cos_theta_o, cos_theta_i))
+ *         + 28 / (23 pi) reflectance (1 - specular) (1 - (1 - cos_theta_i / 2)^5) (1 - (1 - cos_theta_o / 2)^5)
+ *         [1/sr]
  *     F = specular + (1 - specular)(1 - wo.h)^5
  *     pdf = p_d cos_theta_i / pi + p_s sqrt((nx + 1)(ny + 1)) / (2 pi) (n.h)^(...) / (4 wo.h)   [1/sr]
  *

@@ -2,9 +2,10 @@
 /* Blinn's highlight about the half vector h, as plastic has it, over a Lambert surface.
  *
  *     f = reflectance / pi + specular N (n.h)^exponent   [1/sr],    h = (wo + wi) / |wo + wi|
- *     N = (e + 2)(e + 4) / (8 pi (2^(-e/2) + e)), e = exponent: all that arrives along the normal leaves, E(0) =
- * specular N = (e + 8) / (8 pi): the usual fit to it, up to 7.5 % too bright pdf = p_d cos_theta_i / pi + p_s (e + 1) /
- * (2 pi) (n.h)^e / (4 wo.h)   [1/sr]
+ *     N = (e + 2)(e + 4) / (8 pi (2^(-e/2) + e)), e = exponent: all that arrives along the normal leaves,
+ *         E(0) = specular
+ *     N = (e + 8) / (8 pi): the usual fit to it, up to 7.5 % too bright
+ *     pdf = p_d cos_theta_i / pi + p_s (e + 1) / (2 pi) (n.h)^e / (4 wo.h)   [1/sr]
  *
  * (e + 2) / (2 pi), also found, makes (n.h)^e a distribution of microfacets; it is no constant for a lobe that stands
  * alone. J. F. Blinn, Models of light reflection, 1977; the exact N: P.-P. Sloan, in Akenine-Moeller et al., Real-Time

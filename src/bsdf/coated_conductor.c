@@ -4,8 +4,9 @@
  * f is estimated by the walks of layered.h. The base's eta and k are relative to the coat. The density, which serves
  * for weighing only, is that of the coat's own lobe and of one reflection from the base, seen through the coat:
  *
- *     smooth coat:  pdf_base(refracted wo, wi) dw_inside/dw_outside,   dw_inside/dw_outside = cos_outside / (eta^2
- * cos_inside) rough coat:   a lobe of slope variance  eta^2 alpha_base^2 + (eta - 1)^2 alpha_coat^2 / 2
+ *     smooth coat:  pdf_base(refracted wo, wi) dw_inside/dw_outside,
+ *         dw_inside/dw_outside = cos_outside / (eta^2 cos_inside)
+ *     rough coat:   a lobe of slope variance  eta^2 alpha_base^2 + (eta - 1)^2 alpha_coat^2 / 2
  *
  * because a slope x of the base turns the ray by 2 x inside and 2 eta x outside, and a slope of the coat, met twice,
  * turns it by (eta - 1) x each time. Guo, Hasan & Zhao 2018. */

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* A thin layer of dust on a Lambert surface: what the grains scatter once, and what shines through them.
  *
- *     f = albedo / (4 pi) p(a) / (mu_i + mu_o) (1 - T) + T reflectance / pi   [1/sr],    T = exp(-thickness (1/mu_i +
- * 1/mu_o)) p = (1 - g^2) / (1 + 2 g cos a + g^2)^(3/2),  cos a = wi.wo  [1];   pdf = (1 + 2 mu_i) / (4 pi)   [1/sr]
+ *     f = albedo / (4 pi) p(a) / (mu_i + mu_o) (1 - T) + T reflectance / pi   [1/sr],
+ *         T = exp(-thickness (1/mu_i + 1/mu_o))
+ *     p = (1 - g^2) / (1 + 2 g cos a + g^2)^(3/2),  cos a = wi.wo  [1];   pdf = (1 + 2 mu_i) / (4 pi)   [1/sr]
  *
  * thickness is optical, through the layer along the normal; g > 0 sends light on, g < 0 back where it came from.
  * J. F. Blinn, Light reflection functions for simulation of clouds and dusty surfaces, 1982; phase law: L. Henyey &

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /* A rough matte surface that keeps all light: Fujii's Oren-Nayar with what it loses scattered again.
  *
- *     s = wi.wo - cos_theta_i cos_theta_o,   t = max(cos_theta_i, cos_theta_o) where s > 0, else 1,   A = 1 / (1 + (1/2
- * - 2/(3 pi)) r) f1 = rho / pi A (1 + r s / t)   [1/sr]: alone it is the variant "fon" E1(mu) = A (1 + r / pi (S (acos
- * mu - S mu) + 2/3 (S / mu (1 - S^3) - S))),  S = sin theta;   <E1> = A (1 + (2/3 - 28/(15 pi)) r) f  = f1 + rho2 / pi
- * (1 - E1(mu_i)) (1 - E1(mu_o)) / (1 - <E1>),   rho2 = rho^2 <E1> / (1 - rho (1 - <E1>)) E  = rho E1 + rho2 (1 - E1): 1
- * where rho = 1
+ *     s = wi.wo - cos_theta_i cos_theta_o,   t = max(cos_theta_i, cos_theta_o) where s > 0, else 1,
+ *         A = 1 / (1 + (1/2 - 2/(3 pi)) r)
+ *     f1 = rho / pi A (1 + r s / t)   [1/sr]: alone it is the variant "fon"
+ *     E1(mu) = A (1 + r / pi (S (acos mu - S mu) + 2/3 (S / mu (1 - S^3) - S))),  S = sin theta;
+ *         <E1> = A (1 + (2/3 - 28/(15 pi)) r)
+ *     f  = f1 + rho2 / pi (1 - E1(mu_i)) (1 - E1(mu_o)) / (1 - <E1>),   rho2 = rho^2 <E1> / (1 - rho (1 - <E1>))
+ *     E  = rho E1 + rho2 (1 - E1): 1 where rho = 1
  *
  * r = roughness; 0 is Lambert's surface. M. Fujii, 2012 ("fon"); J. Portsmouth, P. Kutz & S. Hill, EON: a practical
  * energy-preserving rough diffuse BRDF, 2024. Limits: saturation rises with roughness, as it does between real grooves.

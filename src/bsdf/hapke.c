@@ -3,10 +3,12 @@
  * and relief that shadows itself, as planetary science fits it to moons and asteroids.
  *
  *     f = w / (4 pi) mu_ie / (mu_ie + mu_oe) ((1 + B(a)) p(a) + H(mu_ie) H(mu_oe) - 1) (1 + C(a)) S / mu_i   [1/sr]
- *     p = (1 + c)/2 HG(-b) + (1 - c)/2 HG(b),  HG(g) = (1 - g^2) / (1 + 2 g cos a + g^2)^(3/2);  or 1 + b cos a + c (3
- * cos^2 a - 1)/2 B = B0 / (1 + tan(a/2) / h)            shadow hiding C = C0 (1 + (1 - exp(-y)) / y) / (2 (1 + y)^2),
- * y = tan(a/2) / hc            coherent backscatter H(x) = 1 / (1 - w x (r0 + (1 - 2 r0 x)/2 ln((1 + x)/x))),  r0 = (1
- * - sqrt(1 - w)) / (1 + sqrt(1 - w))   (2002) H(x) = (1 + 2 x) / (1 + 2 x sqrt(1 - w)) (1981)
+ *     p = (1 + c)/2 HG(-b) + (1 - c)/2 HG(b),  HG(g) = (1 - g^2) / (1 + 2 g cos a + g^2)^(3/2);
+ *         or 1 + b cos a + c (3 cos^2 a - 1)/2
+ *     B = B0 / (1 + tan(a/2) / h)            shadow hiding
+ *     C = C0 (1 + (1 - exp(-y)) / y) / (2 (1 + y)^2),  y = tan(a/2) / hc            coherent backscatter
+ *     H(x) = 1 / (1 - w x (r0 + (1 - 2 r0 x)/2 ln((1 + x)/x))),  r0 = (1 - sqrt(1 - w)) / (1 + sqrt(1 - w))   (2002)
+ *     H(x) = (1 + 2 x) / (1 + 2 x sqrt(1 - w))                                                          (1981)
  *
  * a is the phase angle (cos a = wi.wo; 0: light from behind the viewer), w the albedo of a grain; mu_ie, mu_oe and S
  * are the effective cosines and the shadowing of slopes whose mean angle is theta_bar (Hapke 1984), mu_i, mu_o and 1

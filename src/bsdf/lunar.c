@@ -4,8 +4,9 @@
  *
  *     a = angle between wo and wi (phase angle, 0: Sun behind the viewer)   [rad],   g = compaction, t = forward
  *     f = reflectance 2 / (3 pi) R(a) ((sin a + (pi - a) cos a) / pi + t (1 - cos a)^2) / (cos_theta_i + cos_theta_o)
- * [1/sr] R = 2 - tan a / (2 g) (1 - e)(3 - e),  e = exp(-g / tan a),  where a < pi / 2, else 1;   R(0) = 2 pdf = (1 + 2
- * cos_theta_i) / (4 pi)   [1/sr]
+ *         [1/sr]
+ *     R = 2 - tan a / (2 g) (1 - e)(3 - e),  e = exp(-g / tan a),  where a < pi / 2, else 1;   R(0) = 2
+ *     pdf = (1 + 2 cos_theta_i) / (4 pi)   [1/sr]
  *
  * B. W. Hapke, A theoretical photometric function for the lunar surface, 1963; the sphere's phase law: E. Schoenberg
  * 1929. g is 0.4 (porous: narrow surge) to 0.8; Hapke's fit to the Moon is g = 0.6, t = 0.1. reflectance is no albedo:

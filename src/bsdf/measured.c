@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* A measured material: a file of BSDF data, whatever its format.
  *
- *     f = the file's value between its measurements [1/sr];  pdf in proportion to f |cos_theta_i|, tabulated for each
- * view
+ *     f = the file's value between its measurements [1/sr];
+ *         pdf in proportion to f |cos_theta_i|, tabulated for each view
  *
  * MERL binary, RGL tensor files (pbrt's "measured"), polarised tensor files, BSDF XML (Klems matrices and tensor
  * trees), Cornell goniometer data, ASTM text, ABg coefficients, and plain tables: see the room measured/. Data break

@@ -2,8 +2,8 @@
 /* Glass under a coating of up to 16 thin layers: dielectric mirrors, anti-reflection stacks, dichroic filters.
  *
  *     reflection:   f = R(|wo.m|) D G / (4 |zo| |zi|)                                          [1/sr]
- *     transmission: f = T(|wo.m|) D G |wi.m| |wo.m| / (|zo| |zi| (wi.m + wo.m / eta)^2)         [1/sr]  (over eta^2 for
- * radiance)
+ *     transmission: f = T(|wo.m|) D G |wi.m| |wo.m| / (|zo| |zi| (wi.m + wo.m / eta)^2)   [1/sr]
+ *         (over eta^2 for radiance)
  *
  * R and T from the coherent sum over all layers (film.h), which is what the product of characteristic matrices gives;
  * mean of both polarisations, at each of the path's wavelengths. Layers alternate between a high and a low index, or

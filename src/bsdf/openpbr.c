@@ -8,9 +8,9 @@
  *     glass:   (1 - m) t C_s F D G / (4 ci co)
  *              through it (1 - m) t C_t (1 - F) D G |wi.m| |wo.m| / (ci co (wi.m + wo.m / eta)^2)
  *     under the coat:  a = C_c^((1 / mu_i + 1 / mu_o) / 2), mu the cosines inside it;
- *         K_matte = (1 - E_c(ci))(1 - E_c(co)) / (1 - <E_c>) d,   K of the others = min(1 - E_c(ci), 1 - E_c(co)) d; d
- * = lerp(darkening, 1, (1 - k) / (1 - k E_b)), k = the coat's reflectance from inside: Fresnel's for mirrors, 1 - (1 -
- * <F>) / eta_c^2 for what is rough
+ *         K_matte = (1 - E_c(ci))(1 - E_c(co)) / (1 - <E_c>) d,   K of the others = min(1 - E_c(ci), 1 - E_c(co)) d;
+ *         d = lerp(darkening, 1, (1 - k) / (1 - k E_b)),
+ *         k = the coat's reflectance from inside: Fresnel's for mirrors, 1 - (1 - <F>) / eta_c^2 for what is rough
  *
  * Names, weights, F82 (metals), the index under a coat, its roughening of what is below, alpha_x = r^2 sqrt(2 / (1 + (1
  * - a)^2)), alpha_y = (1 - a) alpha_x are OpenPBR's; EON: Portsmouth, Kutz & Hill 2024; fuzz: Estevez & Kulla 2017

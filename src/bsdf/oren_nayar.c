@@ -4,7 +4,8 @@
  *
  *     a = max(theta_i, theta_o), b = min(theta_i, theta_o), p = cos(phi_i - phi_o), s = sigma   [rad]
  *     qualitative: f = rho / pi (1 - s^2 / (2 s^2 + 0.66) + C2 max(0, p) sin a tan b),  C2 = 0.45 s^2 / (s^2 + 0.09)
- * [1/sr] full:        f = rho / pi (1 - s^2 / (2 s^2 + 0.66) + p C2 B tan b + (1 - |p|) C3 tan((a + b) / 2))
+ *         [1/sr]
+ *     full:        f = rho / pi (1 - s^2 / (2 s^2 + 0.66) + p C2 B tan b + (1 - |p|) C3 tan((a + b) / 2))
  *                      + 0.17 rho^2 / pi s^2 / (s^2 + 0.13) (1 - p (2 b / pi)^2)
  *                  B = sin a, less (2 b / pi)^3 where p < 0;   C3 = s^2 / (8 s^2 + 0.72) (4 a b / pi^2)^2
  *     qualitative: E = rho (A + 2 C2 / pi (sin t (t / 2 - sin 2t / 4) + tan t (1 - sin^3 t) / 3)),  t = theta_o

@@ -2,9 +2,10 @@
 /* A brushed or woven surface: parallel cylinders of radius 1 along x, a distance d apart, sunk into ground at the
  * height h above their axes; light that is scattered once, with all shadowing and masking between the cylinders.
  *
- *     f  = 1 / (d mu_i mu_o) INTEGRAL over what is lit and seen of fm(n) (n.wi)(n.wo) ds   [1/sr],   n = (0, cos g, sin
- * g) fm = reflectance / pi + specular (e + 2) / (2 pi) max(0, 2 (n.wi)(n.wo) - wi.wo)^e,   e = exponent (modified
- * Phong)
+ *     f  = 1 / (d mu_i mu_o) INTEGRAL over what is lit and seen of fm(n) (n.wi)(n.wo) ds   [1/sr],
+ *         n = (0, cos g, sin g)
+ *     fm = reflectance / pi + specular (e + 2) / (2 pi) max(0, 2 (n.wi)(n.wo) - wi.wo)^e,
+ *         e = exponent (modified Phong)
  *
  * Across x, let w be r (cos a, sin a). A point g of a cylinder sees w between the neighbour's tangent and its own:
  * a + asin(max(-1, 1 - d sin a)) <= g <= a + pi/2 where a <= pi/2, mirrored where a > pi/2; the ground's visible part

@@ -3,10 +3,12 @@
  *
  *     wd = (1 - metallic)(1 - t),  wt = (1 - metallic) t,   t = specular_transmission
  *     above and below:  f = wd (C / pi ((1 - FL/2)(1 - FV/2) + R (FL + FV + FL FV (R - 1))) + sheen (1 - cd)^5 C_sheen)
- *                         + (metallic Fm + wd F(cd, eta) + wt F(cd, eta of this side)) D G / (4 ci co) + f_c [1/sr]
- *     through:          f = wt sqrt(C) (1 - F) D G |wi.m| |wo.m| / (ci co (wi.m + wo.m / eta)^2)    (over eta^2 for
- * radiance) FL = (1 - ci)^5,  FV = (1 - co)^5,  R = 2 roughness cd^2,  Fm = C + (1 - C)(1 - cd)^5 alpha_x = roughness^2
- * / a, alpha_y = roughness^2 a,  a = sqrt(1 - 0.9 anisotropic), Trowbridge-Reitz, height-correlated
+ *                         + (metallic Fm + wd F(cd, eta) + wt F(cd, eta of this side)) D G / (4 ci co) + f_c     [1/sr]
+ *     through:          f = wt sqrt(C) (1 - F) D G |wi.m| |wo.m| / (ci co (wi.m + wo.m / eta)^2)
+ *         (over eta^2 for radiance)
+ *     FL = (1 - ci)^5,  FV = (1 - co)^5,  R = 2 roughness cd^2,  Fm = C + (1 - C)(1 - cd)^5
+ *     alpha_x = roughness^2 / a, alpha_y = roughness^2 a,
+ *         a = sqrt(1 - 0.9 anisotropic), Trowbridge-Reitz, height-correlated
  *
  * with ci, co the cosines of wi and wo, cd = wo.m, m the half vector; f_c: clear coat and C_sheen as in disney.c. What
  * does not let light through looks the same from both sides; the glass (wt) is inside below. B. Burley, Extending the

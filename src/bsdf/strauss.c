@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* Paint to metal by words an artist knows: smooth, metallic, transparent, of a colour.
  *
- *     a = 2 theta_i / pi, b = 2 theta_o / pi;   light comes from i and is seen from o; s, m, t = smoothness, metalness,
- * transparency F(x) = (1/(x - 1.12)^2 - 1/1.12^2) / (1/0.12^2 - 1/1.12^2),   G(x) = (1/0.01^2 - 1/(x - 1.01)^2) /
- * (1/0.01^2 - 1/1.01^2) rd = (1 - s^3)(1 - t),   rn = (1 - t) - rd,   rj = min(1, rn + (rn + 0.1) F(a) G(a) G(b)),   e
- * = 3 / (1 - s) f = (1 - m s) rd C / pi + rj (1 + m (1 - F(a))(C - 1)) (e + 1) / (2 pi) max(0, r.wi)^e / cos_theta_i
- * [1/sr]
+ *     a = 2 theta_i / pi, b = 2 theta_o / pi;
+ *         light comes from i and is seen from o; s, m, t = smoothness, metalness, transparency
+ *     F(x) = (1/(x - 1.12)^2 - 1/1.12^2) / (1/0.12^2 - 1/1.12^2),
+ *         G(x) = (1/0.01^2 - 1/(x - 1.01)^2) / (1/0.01^2 - 1/1.01^2)
+ *     rd = (1 - s^3)(1 - t),   rn = (1 - t) - rd,   rj = min(1, rn + (rn + 0.1) F(a) G(a) G(b)),   e = 3 / (1 - s)
+ *     f = (1 - m s) rd C / pi + rj (1 + m (1 - F(a))(C - 1)) (e + 1) / (2 pi) max(0, r.wi)^e / cos_theta_i   [1/sr]
  *
  * C = reflectance, r the mirror of wo. P. S. Strauss, A realistic lighting model for computer animators, 1990, is a
  * formula for shading: the factors 1 / pi and (e + 1) / (2 pi), which it lacks, make a BRDF of it. F and G imitate

@@ -2,9 +2,9 @@
 /* Glass or water under one thin film, or a film in air: oil on water, an anti-reflection coating, a soap bubble.
  *
  *     reflection:   f = R(|wo.m|) D G / (4 |zo| |zi|)                                          [1/sr]
- *     transmission: f = T(|wo.m|) D G |wi.m| |wo.m| / (|zo| |zi| (wi.m + wo.m / eta)^2)         [1/sr]  (over eta^2 for
- * radiance) r = (r01 + r12 e^2) / (1 + r01 r12 e^2),   e = exp(2 pi i n1 d cos_1 / lambda),   R = (|r_s|^2 + |r_p|^2) /
- * 2
+ *     transmission: f = T(|wo.m|) D G |wi.m| |wo.m| / (|zo| |zi| (wi.m + wo.m / eta)^2)   [1/sr]
+ *         (over eta^2 for radiance)
+ *     r = (r01 + r12 e^2) / (1 + r01 r12 e^2),   e = exp(2 pi i n1 d cos_1 / lambda),   R = (|r_s|^2 + |r_p|^2) / 2
  *
  * Airy's sum of all coherent bounces, at each of the path's wavelengths. Light leaves in the directions that bare glass
  * would give it. T = 1 - R where the film is clear; a film that absorbs (film_k) looks different from its two sides and

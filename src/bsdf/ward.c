@@ -2,7 +2,7 @@
 /* Ward's fit to gloss that a gonioreflectometer saw, with brushed surfaces in mind: two slope widths.
  *
  *     f = reflectance / pi + specular exp(-tan^2 d (cos^2 p / ax^2 + sin^2 p / ay^2)) / (4 pi ax ay sqrt(|zo| |zi|))
- * [1/sr]
+ *         [1/sr]
  *
  * d and p are the half vector's angles. The exponent is the exact one (the paper's approximation, for a faster
  * hardware, is not). Reciprocal. specular is what a lobe far from the horizon would reflect: at alpha = 0.2 it is 0.895

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Splats: exact sums of what paths from the lights bring to the picture, whoever adds first.
  *
- *     pixel = (sum over paths of f(raster - centre) rgb) / paths,      var(pixel) = sum over groups (m_g - m)^2 / (G (G
- * - 1))
+ *     pixel = (sum over paths of f(raster - centre) rgb) / paths,
+ *         var(pixel) = sum over groups (m_g - m)^2 / (G (G - 1))
  *
  * A sum is a signed integer of 128 bits in two words, in a unit that is a power of two: integers add in any order to
  * the same number, floats do not. The lower word is added to atomically; whoever makes it overflow carries, so that the

@@ -5,10 +5,10 @@
  *     E_v = INTEGRAL L cos theta dw [lx],   E_d of the sources, E_i = E_v - E_d,   L_b = E_i / pi [cd/m^2] (CIE 117)
  *     UGR = 8 log10(0.25 / L_b SUM L^2 w / P^2)                                      CIE 117:1995
  *     DGP = 5.87e-5 E_v + 0.0918 log10(1 + SUM L^2 w / (E_v^1.87 P^2)) + 0.16        Wienold & Christoffersen 2006
- *     DGI = 10 log10(0.478 SUM L^1.6 W^0.8 / (L_b + 0.07 w^0.5 L)),  W = w / P^2     Hopkinson 1972, Chauvel et al.
- * 1982 CGI = 8 log10(2 (1 + E_d/500) / (E_d + E_i) SUM L^2 w / P^2)                   Einhorn 1979 VCP = 100 Phi(6.374
- * - 1.3227 ln DGR), DGR = (SUM M)^(n^-0.0914), M = 0.5 L (20.4 w + 1.52 w^0.2 - 0.075) / (P F^0.44), F the mean
- * luminance   Guth 1963
+ *     DGI = 10 log10(0.478 SUM L^1.6 W^0.8 / (L_b + 0.07 w^0.5 L)),  W = w / P^2    Hopkinson 1972, Chauvel et al. 1982
+ *     CGI = 8 log10(2 (1 + E_d/500) / (E_d + E_i) SUM L^2 w / P^2)                   Einhorn 1979
+ *     VCP = 100 Phi(6.374 - 1.3227 ln DGR), DGR = (SUM M)^(n^-0.0914),
+ *           M = 0.5 L (20.4 w + 1.52 w^0.2 - 0.075) / (P F^0.44), F the mean luminance   Guth 1963
  *
  * w [sr] a source's solid angle, P its position index (Guth 1963; below the line of sight as beside it, Iwata &
  * Osterhaus 2010). Limits: one view direction; pixels' errors are taken as independent of each other; who sees how

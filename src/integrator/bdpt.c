@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Bidirectional path tracing: a path from the sensor and one from a light, and every way to join the two.
  *
- *     I = sum over s, t of E[ w_s,t f(x) / p_s,t(x) ],     w_s,t = p_s,t^b / sum over s', t' of p_s',t'^b,     b = 2 or
- * 1
+ *     I = sum over s, t of E[ w_s,t f(x) / p_s,t(x) ],     w_s,t = p_s,t^b / sum over s', t' of p_s',t'^b,   b = 2 or 1
  *
  * s vertices from the light, t from the sensor. The density p of a path by area is a product over its vertices, so that
  * neighbouring strategies differ by one factor: p_s-1,t+1 / p_s,t = p(x_t from the sensor) / p(x_t from the light), and

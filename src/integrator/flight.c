@@ -5,8 +5,7 @@
  *
  *     scattered:  f *= sigma_s P,      q *= sigma_t P
  *     null:       f *= (m - sigma_t) P,  q *= (m - sigma_t) P,   r *= m P     (a light's way does not ask, and goes on)
- *     through:    f *= P,  q *= P,  r *= P                                       each over the first wavelength's
- * density
+ *     through:    f *= P,  q *= P,  r *= P                                     each over the first wavelength's density
  *
  * Where nothing scatters, no collision is real: what is absorbed is a weight. Uniform media (m = sigma_t) have no null
  * collisions, light's ways through them are not drawn at all, and what they emit is integrated. */

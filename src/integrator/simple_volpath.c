@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The plain twin of volumetric path tracing: photons of one wavelength, played out as they are.
  *
- *     P(absorbed) : P(scattered) : P(nothing) = sigma_a : sigma_s : m - sigma_t      at each collision against the
- * majorant m
+ *     P(absorbed) : P(scattered) : P(nothing) = sigma_a : sigma_s : m - sigma_t
+ *         at each collision against the majorant m
  *
  * No light is sampled, nothing is weighed, no closed form is used: what it finds, volpath must find (Pharr, Jakob &
  * Humphreys 2023, 14.2.1, which knows no surfaces; here they scatter by their BSDFs). */

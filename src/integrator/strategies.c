@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* The strategies of sampling, and their densities, all as seen from x.
  *
- *     integral over directions   h(wi) L(x, wi) dwi,             h = f(wo, wi) |cos theta_i|, or a meter's response
- * (hemisphere form) integral over surfaces     h(wi) Le(y, -wi) V(x, y) |cos theta_y| / r^2 dA(y),       dwi = |cos
- * theta_y| dA / r^2       (area form)
+ *     hemisphere form: integral over directions of h(wi) L(x, wi) dwi
+ *     area form:       integral over surfaces of h(wi) Le(y, -wi) V(x, y) |cos theta_y| / r^2 dA(y)
+ *
+ * with h = f(wo, wi) |cos theta_i|, or a meter's response, and dwi = |cos theta_y| dA / r^2,
  *
  * so a density by area p_A [1/m^2] is the density p_A r^2 / |cos theta_y| by solid angle [1/sr], which is all that
  * estimators see. E. Veach, Robust Monte Carlo methods for light transport simulation, 1997, ch. 8. */

@@ -8,8 +8,8 @@
  * of the profile's reach one is taken. The density of a point, by area, is the mean over the wavelengths i and the sum
  * over the axes a,
  *
- *     pdf = 1/n SUM_i 1/8 SUM_a P_a pdf_i(distance of po and pi seen along a) |n_i . a|   [1/m^2], i within reach of pi
- * alone
+ *     pdf = 1/n SUM_i 1/8 SUM_a P_a pdf_i(distance of po and pi seen along a) |n_i . a|
+ *         [1/m^2], over those i alone within whose reach pi lies
  *
  * King, Kulla, Conty & Fajardo 2013; Pharr, Jakob & Humphreys 2016, 15.4.1. Once dispersion has ended the other
  * wavelengths, the first alone counts. Limits: the body is locally flat and deep; reach leaves out 1e-4 of a profile.

@@ -2,8 +2,8 @@
 /* Volumetric path tracing: the equation of transfer between surfaces, the rendering equation at them, one scattering
  * per turn.
  *
- *     L(x, -d) = integral_0^s T(t) [sigma_a Le + sigma_s integral p(d, w') L(y, w') dw'] dt + T(s) L_surface   [W m^-2
- * sr^-1 nm^-1]
+ *     L(x, -d) = integral_0^s T(t) [sigma_a Le + sigma_s integral p(d, w') L(y, w') dw'] dt + T(s) L_surface
+ *         [W m^-2 sr^-1 nm^-1]
  *
  * y = x + t d. Light that arrives at a scattering is estimated twice, by a direction toward a light and by one that the
  * matter prefers; both kinds of paths, and those that any of the eight wavelengths would have drawn, are weighed by the

@@ -172,8 +172,8 @@ static void check_mean_reciprocity(struct certifying *c, sr_vec3 wo, sr_vec3 wi)
 
 /* What a sends to b, b sends to a: for a by the cosine law and b drawn from it, weight = f |cos_theta_b| / pdf,
  *
- *     E[ weight (h(a, b) - h(b, a)) ] = 1 / pi INTEGRAL INTEGRAL f(a, b) (h(a, b) - h(b, a)) |cos_theta_a|
- * |cos_theta_b| da db = 0
+ *     E[ weight (h(a, b) - h(b, a)) ]
+ *         = 1 / pi INTEGRAL INTEGRAL f(a, b) (h(a, b) - h(b, a)) |cos_theta_a| |cos_theta_b| da db = 0
  *
  * for every h. The second term is drawn in the form for importance. Weights of walks are at most about 1. */
 static void check_exchange(struct certifying *c)

@@ -11,8 +11,9 @@
  *     normalisation   INTEGRAL pdf dwi <= 1
  *     lost            samples that are not drawn, or mirrored, are as many as the density leaves over: 1 - INTEGRAL pdf
  *     sampling        chi2 = SUM (O - E)^2 / (E + e^2) over cells, e the error of the integral (Pearson 1900)
- *     light           mean of f |cos_theta_i| g / pdf over samples = INTEGRAL f |cos_theta_i| g dwi, for g = 1, wi.x,
- * wi.z; the integral by random points in each cell, a stratified estimate with an error of its own
+ *     light           mean of f |cos_theta_i| g / pdf over samples = INTEGRAL f |cos_theta_i| g dwi,
+ *                     for g = 1, wi.x, wi.z; the integral by random points in each cell, a stratified
+ *                     estimate with an error of its own
  *
  * Limits: a lobe narrower than 1e-4 rad off these directions that the sampler never draws is not found. Where the
  * samples of many cells crowd on a ridge that is much narrower than the cell, no quadrature of this size resolves the

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* From what a scene file says of a light's brightness to a spectrum with that brightness.
  *
- *     s'(lambda) = luminance s(lambda) / INTEGRAL s ybar dlambda         so  INTEGRAL s' ybar dlambda = luminance
- * [cd/m^2]
+ *     s'(lambda) = luminance s(lambda) / INTEGRAL s ybar dlambda     so  INTEGRAL s' ybar dlambda = luminance  [cd/m^2]
  *
  * Spectra thus contain 683 lm/W: s' / 683 is in W m^-2 sr^-1 nm^-1. Of scenes in SI units s' = 683 s, and Planck's law
  * as it is. An RGB emission is rgb times a white illuminant, and is normalised by the white alone, as pbrt-v4 does:

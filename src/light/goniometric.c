@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* A point whose intensity is an image of all directions.
  *
- *     I(w) = I Y(square(w)),   Phi = 4 pi I mean(Y)          [cd] [lm];   p(w) = Y / (4 pi mean(Y))  [1/sr] where paths
- * begin
+ *     I(w) = I Y(square(w)),   Phi = 4 pi I mean(Y)    [cd] [lm];   p(w) = Y / (4 pi mean(Y))  [1/sr] where paths begin
  *
  * The image is an equal-area octahedral map (Clarberg 2008), looked up without interpolation; Y is the mean of R, G and
  * B, or the only channel. The map's pole is the light's +y: its (x, y, z) is (x, z, y) here, as pbrt-v4 has it. I is

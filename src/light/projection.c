@@ -2,9 +2,9 @@
 /* A projector: a point that throws an image along +z.
  *
  *     (u, v) = place in the image of w / w.z,      I(w) = rgb(u, v) * white * scale          [cd]
- *     Phi    = SUM over texels I_i Omega_i         Omega of a rectangle at z = 1: atan(x y / sqrt(1 + x^2 + y^2)) at
- * its corners [sr] p(w)   = p(u, v) / (A cos^3 theta)           A = 4 tan^2(fov / 2) * longer side / shorter  [m^2 at 1
- * m]
+ *     Phi    = SUM over texels I_i Omega_i         [lm]; Omega [sr] of a rectangle at z = 1 is the sum, with signs,
+ *                                                  of atan(x y / sqrt(1 + x^2 + y^2)) at its corners
+ *     p(w)   = p(u, v) / (A cos^3 theta)           A = 4 tan^2(fov / 2) * longer side / shorter  [m^2 at 1 m]
  *
  * fov is that of the shorter side; the first row of texels is on the side of +y, the first column on that of -x, as
  * pbrt-v4. The image is looked up without interpolation. With `power` Phi = scale * power. The texels are intensities:

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Gradient noise, and sums of its octaves.
  *
- *     noise(p)      = the gradients of the 8 corners of p's cell, each times the way from its corner, mixed by 6 t^5 -
- * 15 t^4 + 10 t^3 fbm(p)        = sum_i w^i  noise(1.99^i p) turbulence(p) = sum_i w^i |noise(1.99^i p)|
+ *     noise(p)      = the gradients of the 8 corners of p's cell, each times the way from its corner,
+ *                     mixed by 6 t^5 - 15 t^4 + 10 t^3
+ *     fbm(p)        = sum_i w^i  noise(1.99^i p)
+ *     turbulence(p) = sum_i w^i |noise(1.99^i p)|
  *
  * Perlin, "Improving noise", 2002, with its permutation. Octaves finer than the footprint are left out; the last one
  * fades, as in PBRT4 10.6, whose numbers these are: a scene's marble has its veins where pbrt-v4 draws them. */

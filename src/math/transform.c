@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Transforms of points, vectors and normals: a 4 x 4 matrix beside its inverse.
  *
- *     p' = M p / w,    v' = L v,    n' = L^-T n,    |error of p'| <= gamma(3) (|L| |p| + |t|) + (1 + gamma(3)) |L|
- * |error of p|
+ *     p' = M p / w,    v' = L v,    n' = L^-T n,
+ *         |error of p'| <= gamma(3) (|L| |p| + |t|) + (1 + gamma(3)) |L| |error of p|
  *
  * L is the linear part, t the translation. Inverses are made in double by elimination with pivots. The error bound
  * follows N. Higham, Accuracy and Stability of Numerical Algorithms, 2002, 3.1; it takes the matrix as exact and as

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Measurements that fill no grid: a smooth mean of the eight nearest ones.
  *
- *     log(f + e) = SUM w_k log(f_k + e) / SUM w_k,    w_k = ((R - d_k) / (R d_k))^2,    R = distance of the ninth,  e =
- * 0.001 / sr
+ *     log(f + e) = SUM w_k log(f_k + e) / SUM w_k,   w_k = ((R - d_k) / (R d_k))^2,   R = distance of the ninth,
+ *         e = 0.001 / sr
  *
  * in logarithms, so that a peak that one measurement has hit does not spread to its neighbours
  * (D. Shepard 1968; weights of R. Franke & G. Nielson 1980: continuous, exact at the measurements). Distances of

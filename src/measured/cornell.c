@@ -3,8 +3,7 @@
  *
  *     # num wls          the count n
  *     # wls              n wavelengths [nm]
- *     # theta i, phi i, theta s, phi s, spectral sample values       4 angles [rad] and n values of f [1/sr], many
- * times
+ *     # theta i, phi i, theta s, phi s, spectral sample values      4 angles [rad] and n values of f [1/sr], many times
  *
  * Both azimuths belong to directions away from the surface: the mirror direction is at phi_s = phi_i + pi. Program of
  * Computer Graphics, Cornell University; the light measurement laboratory of S. Foo 1997. */

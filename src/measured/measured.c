@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Files of BSDF data: told apart by their content, made one kind of object.
  *
- *     f = number / (1, |cos_theta_o|, pi)       for numbers that are the BSDF, the BSDF times cosine, or a reflectance
- * factor
+ *     f = number / (1, |cos_theta_o|, pi)   for numbers that are the BSDF, the BSDF times cosine,
+ *         or a reflectance factor
  *
  * Data of one side serve for both: directions are mirrored in the surface. */
 #include "measured/private.h"

@@ -5,8 +5,8 @@
  * local +y, so that seen from above C runs against the clock.
  *
  *     d = (sin gamma cos C, sin gamma sin C, -cos gamma)              [1]
- *     Phi = INTEGRAL I(C, gamma) sin gamma dgamma dC                  [lm], exact for the intensity between the angles,
- * which is bilinear in C and gamma
+ *     Phi = INTEGRAL I(C, gamma) sin gamma dgamma dC                  [lm], exact for the intensity between the
+ *                                                                     angles, which is bilinear in C and gamma
  *
  * IES LM-63-1986, -1991, -1995, -2002, -2019; EULUMDAT: A. W. Stockmar 1990, 1998. Limits: far field only; types A and
  * B are resampled to C-planes; TILT is understood for a luminaire that hangs as it was measured. */

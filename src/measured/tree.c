@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Tensor trees: the BSDF over squares that stand for hemispheres, divided where it varies.
  *
- *     rank 4: (a, b) of -s_i, (c, d) of s_o, with s = (x, y) of a direction, mapped from the disk to the unit square by
- * Shirley & Chiu's concentric map, which keeps areas: a cell's projected solid angle is pi times its area rank 3: 1/2 -
- * |s_i| / 2, then (c, d) of s_o turned so that -s_i lies along +x (isotropic)
+ *     rank 4: (a, b) of -s_i, (c, d) of s_o, with s = (x, y) of a direction,
+ *             mapped from the disk to the unit square by Shirley & Chiu's concentric map, which keeps areas:
+ *             a cell's projected solid angle is pi times its area
+ *     rank 3: 1/2 - |s_i| / 2, then (c, d) of s_o turned so that -s_i lies along +x (isotropic)
  *
  * { … } holds 2^n nodes (bit i of a node's place is the half of coordinate i), or 2^(n k) values, the last coordinate
  * fastest; constant over each cell. G. Ward, Radiance's bsdf_t; values in 1/sr. CIE-u and -v beside Visible give

@@ -4,8 +4,8 @@
  * the file, once, here.
  *
  *     segment: magic, version, number of grids, codec;  per grid 176 bytes and its name;  then the grids
- *     grid: header (672 bytes), tree (64), root and its tiles, upper nodes (32^3 children), lower nodes (16^3), leaves
- * (8^3 values)
+ *     grid: header (672 bytes), tree (64), root and its tiles, upper nodes (32^3 children), lower nodes (16^3),
+ *         leaves (8^3 values)
  *
  * Layout and reading of values are PNanoVDB.h's, through a buffer that gives 0 outside of the grid. Values are float,
  * or numbers of 1 to 16 bits that each leaf scales (Fp4, Fp8, Fp16, FpN). Codecs: none and zip. Limits: version 32; a

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Coloured smoke: both coefficients, and the emission, as rgb on a regular grid in a box.
  *
- *     sigma_a(p, lambda) = scale sum over the eight voxels around p of w_i s(rgb_i, lambda)       [1/m],   sigma_s
- * likewise Le = Lescale sum of w_i s(rgb_i, lambda) white(lambda)                                      [cd/m^2 times
- * the share of its wavelength]
+ *     sigma_a(p, lambda) = scale sum over the eight voxels around p of w_i s(rgb_i, lambda)   [1/m],   sigma_s likewise
+ *     Le = Lescale sum of w_i s(rgb_i, lambda) white(lambda)                 [cd/m^2 times the share of its wavelength]
  *
  * s: the spectra of rgb (Jakob & Hanika 2019), interpolated as spectra (pbrt-v4). A coefficient that is not given is 1
  * in all of the box. The white is the colour space's illuminant with the numbers of its table, about 100, as pbrt-v4

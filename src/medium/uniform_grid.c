@@ -2,8 +2,8 @@
 /* Smoke and fire as a simulation leaves them: a density on a regular grid in a box.
  *
  *     sigma_a = scale d(p) sigma_a(lambda),   sigma_s likewise     [1/m]
- *     Le = Lescale(p) Le(lambda)   or   Lescale(p) B(lambda, (T(p) - offset) factor)      [cd/m^2 times the share of
- * its wavelength]
+ *     Le = Lescale(p) Le(lambda)   or   Lescale(p) B(lambda, (T(p) - offset) factor)
+ *         [cd/m^2 times the share of its wavelength]
  *
  * B is Planck's law scaled to a maximum of 1; colder than 100 K it is dark. d, T and Lescale are linear between the
  * voxels (grid.c). Where no Lescale is given pbrt-v4 takes a grid of one voxel, which fades from the middle of the box

@@ -2,11 +2,11 @@
 /* Meters at a point: a surface element and the small bodies of lighting practice.
  *
  *     irradiance       E     = INTEGRAL L cos(theta) dw               over the hemisphere of the normal
- *     cylindrical      E_cyl = 1/pi INTEGRAL L sin(theta) dw          theta from the cylinder's axis, over all
- * directions semicylindrical  E_sc  = 1/pi INTEGRAL L sin(theta) (1 + cos(phi)) dw    phi from where the half cylinder
- * faces hemispherical    E_hs  = 1/4 INTEGRAL L (1 + cos(theta)) dw     theta from the normal of its base spherical
- * E_sph = 1/4 INTEGRAL L dw                      mean over the whole surface of a small sphere fluence rate     E_o   =
- * INTEGRAL L dw                          the same by the area of its great circle
+ *     cylindrical      E_cyl = 1/pi INTEGRAL L sin(theta) dw        theta from the cylinder's axis, over all directions
+ *     semicylindrical  E_sc  = 1/pi INTEGRAL L sin(theta) (1 + cos(phi)) dw    phi from where the half cylinder faces
+ *     hemispherical    E_hs  = 1/4 INTEGRAL L (1 + cos(theta)) dw     theta from the normal of its base
+ *     spherical        E_sph = 1/4 INTEGRAL L dw                      mean over the whole surface of a small sphere
+ *     fluence rate     E_o   = INTEGRAL L dw                          the same by the area of its great circle
  *
  * The first five are flux on the body by the area of its curved surface, so that a uniform field of radiance L reads pi
  * L; E_o reads 4 pi L. CIE S 017:2020 calls both spherical irradiance: the words of 17-21-066 are a mean over the

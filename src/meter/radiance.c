@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* A radiance meter: along a ray, or the mean over a cone of acceptance.
  *
- *     L,    or    1/Omega INTEGRAL over the cone of L dw,   Omega = 2 pi (1 - cos(half angle))        [cd m^-2], [W
- * m^-2 sr^-1] */
+ *     L,    or    1/Omega INTEGRAL over the cone of L dw,   Omega = 2 pi (1 - cos(half angle))
+ *         [cd m^-2], [W m^-2 sr^-1] */
 #include "meter/private.h"
 
 struct radiance {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* More samples where a picture is noisy, without bias.
  *
- *     n_A(p) = n (0.1 + 0.9 sigma_B(p) / mean sigma_B),    picture = (mean_A + mean_B) / 2,    and the same with A and
- * B changed
+ *     n_A(p) = n (0.1 + 0.9 sigma_B(p) / mean sigma_B),   picture = (mean_A + mean_B) / 2,
+ *         and the same with A and B changed
  *
  * sigma^2: variance of a sample's luminance in the pilot, averaged over 7 x 7 pixels, so that a pixel whose pilot found
  * nothing still gets what its neighbours need. Given B's pilot, n_A is a number, so that E[mean_A] is what it is for

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Sums over a fixed binary tree, made with a stack.
  *
- *     S(level, k) = S(level - 1, 2 k) + S(level - 1, 2 k + 1),     S(0, i) = sample i,     |error| <= log2(n) eps sum
- * |sample|
+ *     S(level, k) = S(level - 1, 2 k) + S(level - 1, 2 k + 1),   S(0, i) = sample i,
+ *         |error| <= log2(n) eps sum |sample|
  *
  * Floats do not add to the same sum in any order, but they do along the same tree: a run that is cut anywhere leaves
  * the largest nodes that lie within each piece (2 log2 n at most), and these join to the nodes of the run that was not

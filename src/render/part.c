@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Parts of a picture: sums of some of its samples, which become the whole picture's to the last bit.
  *
- *     a part = { S(level, k) of the largest nodes that lie within its samples },      S(level, k) = S(level - 1, 2 k) +
- * S(level - 1, 2 k + 1)
+ *     a part = { S(level, k) of the largest nodes that lie within its samples },
+ *         S(level, k) = S(level - 1, 2 k) + S(level - 1, 2 k + 1)
  *
  * The tree is that of block_tree.c. Two halves of a node are joined wherever both are there, so that the order of parts
  * does not matter; a block whose samples are all there is folded as an uncut one. Splats are integers (film/splat.c)

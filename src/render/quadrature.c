@@ -2,7 +2,7 @@
 /* What a meter reads, without chance: light that arrives at a point, or that a point reflects, by adaptive cubature.
  *
  *     INTEGRAL g(wi) L(wi) dwi = SUM over lights of  INTEGRAL over the unit square of  g(wi(u)) L V / p(wi(u)) du
- * [1/nm]
+ *         [1/nm]
  *
  * g: a meter's response, or f(wo, wi) |cos theta_i| of the surface that it looks at. A light's own draw wi(u), with its
  * density p, is the change of variables: over the light's area or its solid angle, so that V = 1 leaves it smooth. What

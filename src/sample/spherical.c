@@ -4,7 +4,7 @@
  * Triangle: with edges e1, e2, corners A, B, C seen from p, lengths a, b, c,
  *     tan(Omega / 2) = A.(e1 x e2) / (a b c + (A.B) c + (B.C) a + (C.A) b)
  * A point C' at angle s from A on the arc AC cuts off the share u of the area where, with t the unit tangent of the arc
- * at A, T = tan(u Omega / 2), V = t.(A x B), k = 1 + A.B (all of unit length),   tan(s / 2) = T k / (V - T B.t). The
+ * at A, T = tan(u Omega / 2), V = t.(A x B), k = 1 + A.B (all of unit length), tan(s / 2) = T k / (V - T B.t). The
  * height within B C' is linear in 1 - cos. All is kept as differences from A or B: small triangles lose no digits.
  *
  * Rectangle: at distance z, in coordinates of its plane, with beta_i = y_i / sqrt(y_i^2 + z^2) and sigma = x / sqrt(x^2

@@ -4,8 +4,8 @@
  *     r = 1 at the rim, theta_m = fov / 2 from the axis there:
  *     equidistant    theta = r theta_m                               (angular; Radiance's -vta)
  *     equisolid      sin(theta/2) = r sin(theta_m/2)                 all pixels see the same solid angle
- *     orthographic   sin theta = r sin theta_m                       all pixels weigh alike in the illuminance
- * (Radiance's -vth) stereographic  tan(theta/2) = r tan(theta_m/2)                 keeps shapes (Radiance's -vts)
+ *     orthographic   sin theta = r sin theta_m              all pixels weigh alike in the illuminance (Radiance's -vth)
+ *     stereographic  tan(theta/2) = r tan(theta_m/2)                 keeps shapes (Radiance's -vts)
  *
  * The disk touches the shorter sides of the picture. Light comes to three pixels beyond the rim, so that those which
  * the rim cuts tell the mean of what they see, and to none further out. The solid angle of a pixel is the integral

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* Curves: strips about cubic Bézier segments that turn to whoever looks, as pbrt-v4 means them.
  *
- *     c(u) = a0 + a1 u + a2 u^2 + a3 u^3 [m],  u in 0 … 1 along each segment       b = d x c'(u) / |...|   across, seen
- * along d p = c(u) + (v - 1/2) h(u) b [m],  v in 0 … 1 across                          h = h0 + (h1 - h0) u    width
- * [m]
+ *     c(u) = a0 + a1 u + a2 u^2 + a3 u^3 [m],  u in 0 … 1 along each segment;  v in 0 … 1 across
+ *     p = c(u) + (v - 1/2) h(u) b [m]
+ *     b = d x c'(u) / |...|                    across, seen along d
+ *     h = h0 + (h1 - h0) u                     the width [m]
  *
  * h is linear in u along the whole curve. n = dp/du x dp/dv, which for flat curves points away from the viewer. Of
  * cylinders dp/dv is turned by 180 deg (1/2 - v) about c', so that n is that of a tube; p stays in the strip. Of

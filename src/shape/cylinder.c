@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The mantle of a cylinder between two heights and within an angle around z; it has no lids:
  *
- *     p = (r cos phi, r sin phi, z) [m]   u = phi / phi_max   v = (z - z_min) / (z_max - z_min) [1]   n away from the
- * axis
+ *     p = (r cos phi, r sin phi, z) [m]   u = phi / phi_max   v = (z - z_min) / (z_max - z_min) [1]
+ *     n points away from the axis
  *
  * The hit is (u, v). Drawn uniformly by area in object space; under unequal scales the density follows the Jacobian. */
 #include "shape/quadric.h"

@@ -6,8 +6,9 @@
  *     inside     p' = (1 - n beta) p + beta SUM p_i,  beta = 3/(8 n), 3/16 for n = 3     edge: (3 (p + q) + r + s) / 8
  *     boundary   p' = 3/4 p + 1/8 (b_0 + b_1)                                            edge: (p + q) / 2
  * Limit, the left eigenvector of eigenvalue 1:
- *     inside     p = (1 - n gamma) p + gamma SUM p_i,  gamma = 1 / (n + 3/(8 beta))      boundary   2/3 p + 1/6 (b_0 +
- * b_1) Tangents, those of the next ones: inside SUM cos(2 pi i/n) p_i and SUM sin(2 pi i/n) p_i; on a boundary with n
+ *     inside     p = (1 - n gamma) p + gamma SUM p_i,  gamma = 1 / (n + 3/(8 beta))
+ *     boundary   p = 2/3 p + 1/6 (b_0 + b_1)
+ * Tangents, those of the next ones: inside SUM cos(2 pi i/n) p_i and SUM sin(2 pi i/n) p_i; on a boundary with n
  * neighbours b_1 - b_0 and, with t = pi/(n-1), SUM sin(i t) p_i + k (b_0 + b_1) - (2 k + cot(t/2)) p, k = (sin t -
  * cot(t/2)) / (1 + 2 cos t). C. Loop, Smooth subdivision surfaces based on triangles, 1987; H. Hoppe and others,
  * Piecewise smooth surface reconstruction, 1994. N points against the winding, as in pbrt-v4. What is above is so where

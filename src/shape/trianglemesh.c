@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /* Triangles: p = b0 p0 + b1 p1 + b2 p2 [m], uv and normals likewise.
  *
- *     n  = (p1 - p0) x (p2 - p0) / |...|             the winding is counterclockwise seen from outside, turned if
- * flipped; where there are N, on the side of the interpolated N instead |error of p| <= gamma(7) SUM |b_i p_i| [m]
- *     + 32 u w_x w_y w_z / |(p1 - p0) x (p2 - p0)|   [m] along n: how far from its plane a ray caster may find itself
- * that computes in floats; w: the box's size, u = 2^-24 (docs/decisions/0024-leaving-triangles.md) du12 dpdu + dv12
- * dpdv = p1 - p2, and so on     solved for dpdu, dpdv [m]
+ *     n  = (p1 - p0) x (p2 - p0) / |...|             the winding is counterclockwise seen from outside,
+ *                                                    turned if flipped; where there are N, on the side of the
+ *                                                    interpolated N instead
+ *     |error of p| <= gamma(7) SUM |b_i p_i|         [m]
+ *     + 32 u w_x w_y w_z / |(p1 - p0) x (p2 - p0)|   [m] along n: how far from its plane a ray caster that computes in
+ *                                                    floats may believe a hit to lie; w: the box's size,
+ *                                                    u = 2^-24 (docs/decisions/0024-leaving-triangles.md)
+ *     du12 dpdu + dv12 dpdv = p1 - p2, and so on     solved for dpdu, dpdv [m]
  *
  * Sampled toward a point: uniformly in the solid angle Omega (J. Arvo 1995), times the bilinear weight of the
  * receiver's cosine at the corners; by area, pdf = r^2 / (A |cos theta|) [1/sr], where the triangle looks small (that

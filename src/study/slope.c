@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* The slope of an error: least squares in logarithms, with Student's bounds.
  *
- *     y = a + b (x - mean x),    u^2(b) = s^2 / SUM (x - mean x)^2,    u^2(y(x)) = s^2 (1/k + (x - mean x)^2 / SUM (x -
- * mean x)^2)
+ *     y = a + b (x - mean x),    u^2(b) = s^2 / SUM (x - mean x)^2,
+ *         u^2(y(x)) = s^2 (1/k + (x - mean x)^2 / SUM (x - mean x)^2)
  *
  * s^2: residual variance with k - 2 degrees of freedom (N. Draper & H. Smith, Applied Regression Analysis, 1998, ch.
  * 1). Limits: a line is taken for granted; errors that bend are the mean of their slopes, and their residuals widen the

@@ -4,10 +4,13 @@
  *
  *     multiple: INTEGRAL_0^oo  sigma_t' exp(-sigma_t' z) kappa rho'^2 (C_phi phi(r, z) + C_E E(r, z)) dz       [1/m^2]
  *     phi = (exp(-sigma_tr d_r) / d_r - exp(-sigma_tr d_v) / d_v) / (4 pi D)
- *     E   = (z_r (1 + sigma_tr d_r) exp(-sigma_tr d_r) / d_r^3 - z_v (1 + sigma_tr d_v) exp(-sigma_tr d_v) / d_v^3) /
- * (4 pi) z_r = z, z_v = -z - 4 D A, A = (1 + 3 F_2) / (1 - 2 F_1), d = sqrt(r^2 + z^2) D = (2 sigma_a + sigma_s') / (3
- * sigma_t'^2), sigma_tr = sqrt(sigma_a / D), sigma_s' = sigma_s (1 - g), rho' = sigma_s' / sigma_t' C_phi = (1 - 2 F_1)
- * / 4, C_E = (1 - 3 F_2) / 2, F_k = INTEGRAL_0^1 F(mu from inside) mu^k dmu, kappa = 1 - exp(-2 sigma_t' (d_r + z))
+ *     E   = (z_r (1 + sigma_tr d_r) exp(-sigma_tr d_r) / d_r^3
+ *         - z_v (1 + sigma_tr d_v) exp(-sigma_tr d_v) / d_v^3) / (4 pi)
+ *     z_r = z, z_v = -z - 4 D A, A = (1 + 3 F_2) / (1 - 2 F_1), d = sqrt(r^2 + z^2)
+ *     D = (2 sigma_a + sigma_s') / (3 sigma_t'^2), sigma_tr = sqrt(sigma_a / D),
+ *     sigma_s' = sigma_s (1 - g), rho' = sigma_s' / sigma_t'
+ *     C_phi = (1 - 2 F_1) / 4, C_E = (1 - 3 F_2) / 2, F_k = INTEGRAL_0^1 F(mu from inside) mu^k dmu,
+ *     kappa = 1 - exp(-2 sigma_t' (d_r + z))
  *
  *     single: INTEGRAL_{t_c}^oo  sigma_s exp(-(t + d)) p(-cos) (1 - F(cos from inside)) cos / d^2 dt,
  *     d = sqrt(r^2 + t^2), cos = t / d, t_c = r sqrt(eta^2 - 1): below, nothing but total reflection

@@ -2,8 +2,8 @@
 /* steradian converge: errors of a scene's picture, or of one of its meters' readings.
  *
  *     error^2 = mean over seeds of (X - R)^2 / R^2                               of a reading, R its reference
- *     error^2 = mean over seeds and pixels of (Y - R)^2 / (R^2 + 0.01 mean(R)^2)  of luminances, dark pixels not
- * overrated
+ *     error^2 = mean over seeds and pixels of (Y - R)^2 / (R^2 + 0.01 mean(R)^2)
+ *         of luminances, dark pixels not overrated
  *
  * less the reference's own variance. All estimators have the same maxdepth as the reference, or they would not converge
  * to it. Pixels look through their middles, so that the edges of what is seen, which no estimator of light helps, have

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* steradian image --region --statistics: a region as a measurement.
  *
- *     several pictures, independent replicates:  L = mean of the pictures' means, u from their spread, nu = pictures -
- * 1 one picture:                               u^2 = SUM u_pixel^2 / n^2,  nu = (SUM u_pixel^2)^2 / SUM u_pixel^4 /
- * nu_pixel
+ *     several pictures, independent replicates:
+ *         L = mean of the pictures' means, u from their spread, nu = pictures - 1
+ *     one picture:
+ *         u^2 = SUM u_pixel^2 / n^2,  nu = (SUM u_pixel^2)^2 / SUM u_pixel^4 / nu_pixel
  *
  * Limits: the second form takes pixels for independent, as those of a render are but for light that splats; the spread
  * of pictures takes in whatever they share. Luminance of one picture adds the channels' errors, for they come from the

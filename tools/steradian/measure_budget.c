@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* steradian measure --budget: which uncertainties a reading has, and what each contributes.
  *
- *     u_c^2 = u_A^2 + SUM (c_i u_i)^2,    c_i = (y(x_i + u_i) - y(x_i - u_i)) / (2 u_i),    nu = u_c^4 / SUM (c_i
- * u_i)^4 / nu_i
+ *     u_c^2 = u_A^2 + SUM (c_i u_i)^2,    c_i = (y(x_i + u_i) - y(x_i - u_i)) / (2 u_i),
+ *         nu = u_c^4 / SUM (c_i u_i)^4 / nu_i
  *
  * GUM, JCGM 100:2008, 5.1.3 and G.4; type A: the replicates; type B: what the scene declares, each measured with the
  * same random numbers on both sides, so that their noise is the same as far as paths go alike. Limits: inputs are

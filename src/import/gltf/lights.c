@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* Lights without extent (KHR_lights_punctual).
  *
- *     point, spot: intensity in cd; directional: illuminance in lx of a surface that faces it; all of white light,
- * times colour
+ *     point, spot: intensity in cd; directional: illuminance in lx of a surface that faces it;
+ *     all of white light, times colour
  *
  * Lights shine along their node's -z. Spots fall off between their cones as pbrt's do, smoothly in the cosine; glTF
  * only recommends its own way. */

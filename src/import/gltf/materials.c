@@ -2,9 +2,11 @@
 /* Materials of glTF as "openpbr": the table of docs/guide/gltf.md.
  *
  *     metallic-roughness:  base_color, base_metalness, specular_roughness; F0 by the index of refraction, 1.5
- *     anisotropy s:        a_t = lerp(r^2, 1, s^2), a_b = r^2  as  r' sqrt(2 / (1 + (1 - a)^2)) = a_t, a = 1 - a_b /
- * a_t specular-glossiness: F0 = max(specular) as an index of refraction, its tint as specular_color, roughness = 1 -
- * glossiness volume:              sigma_a = -ln(attenuationColor) / attenuationDistance                        [1/m]
+ *     anisotropy s:        a_t = lerp(r^2, 1, s^2), a_b = r^2,
+ *                          as r' sqrt(2 / (1 + (1 - a)^2)) = a_t, a = 1 - a_b / a_t
+ *     specular-glossiness: F0 = max(specular) as an index of refraction, its tint as specular_color,
+ *                          roughness = 1 - glossiness
+ *     volume:              sigma_a = -ln(attenuationColor) / attenuationDistance                        [1/m]
  *
  * glTF 2.0, 3.9 and appendix B; the extensions KHR_materials_*. What has no counterpart is told by its name. */
 #include "import/gltf/gltf.h"
