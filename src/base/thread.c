@@ -28,15 +28,35 @@ int sr_thread_count(void)
     return n > 0 ? (int)n : 1;
 }
 
+static uint64_t float_mode(void)
+{
+    uint64_t mode = 0;
+#if defined(__x86_64__)
+    mode = _mm_getcsr();
+#elif defined(__aarch64__)
+    __asm__ volatile("mrs %0, fpcr" : "=r"(mode));
+#endif
+    return mode;
+}
+
+static void set_float_mode(uint64_t mode)
+{
+#if defined(__x86_64__)
+    _mm_setcsr((unsigned)mode);
+#elif defined(__aarch64__)
+    __asm__ volatile("msr fpcr, %0" ::"r"(mode));
+#else
+    (void)mode;
+#endif
+}
+
 /* Denormals cost a hundred cycles each and carry no light; Embree expects them flushed as well. */
 static void flush_denormals(void)
 {
 #if defined(__x86_64__)
-    _mm_setcsr(_mm_getcsr() | 0x8040u); // FTZ, DAZ
+    set_float_mode(float_mode() | 0x8040u); // FTZ, DAZ
 #elif defined(__aarch64__)
-    uint64_t fpcr;
-    __asm__ volatile("mrs %0, fpcr" : "=r"(fpcr));
-    __asm__ volatile("msr fpcr, %0" ::"r"(fpcr | (1ull << 24)));
+    set_float_mode(float_mode() | 1ull << 24); // FZ
 #endif
 }
 
@@ -61,15 +81,16 @@ void sr_parallel(int threads, void (*work)(void *context, int thread), void *con
     pthread_t ids[MAX_THREADS];
     struct start starts[MAX_THREADS];
     int started = 0;
-    // the caller only waits, so that its own floating-point mode stays as it was
     for (int i = 0; i < threads; ++i) {
         starts[started] = (struct start){work, context, i};
         if (pthread_create(&ids[started], NULL, begin, &starts[started]) != 0)
             break;
         ++started;
     }
+    uint64_t mode = float_mode();
     for (int i = started; i < threads; ++i) // no more threads to be had: do their part here
         begin(&(struct start){work, context, i});
+    set_float_mode(mode); // the caller's own
     for (int i = 0; i < started; ++i)
         pthread_join(ids[i], NULL);
 }

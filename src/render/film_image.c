@@ -196,8 +196,11 @@ sr_status sr_render_image(const struct sr_film *film, bool with_error, bool is_r
         return status;
     struct sr_image *out = *image;
     if (buckets && (sr_image_set_attribute(out, "spectralLayoutVersion", "1.0", error) != SR_OK ||
-                    sr_image_set_attribute(out, "emissiveUnits", "W.m^-2.sr^-1", error) != SR_OK))
+                    sr_image_set_attribute(out, "emissiveUnits", "W.m^-2.sr^-1", error) != SR_OK)) {
+        sr_image_free(out);
+        *image = NULL;
         return error->status;
+    }
     out->x0 = film->settings.x0;
     out->y0 = film->settings.y0;
     out->full_width = (uint32_t)film->settings.width;

@@ -3,6 +3,7 @@
 #include "test.h"
 
 #include <stdatomic.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -263,6 +264,26 @@ TEST(parallel_for_does_each_piece_once)
     }
     sr_parallel_for(3, 0, count_one, NULL);
     EXPECT(sr_thread_count() >= 1);
+}
+
+/* Address space for no more threads: the caller does their part, and still knows denormals. */
+TEST(parallel_work_is_done_where_no_thread_can_be_had)
+{
+    if (is_slow_build())
+        return; // sanitizers want address space of their own
+    struct rlimit had, none;
+    getrlimit(RLIMIT_AS, &had);
+    none = had;
+    none.rlim_cur = 1 << 20;
+    static struct work work;
+    sr_parallel(60, count_thread, &work); // the stack has grown to what is needed
+    memset(&work, 0, sizeof work);
+    setrlimit(RLIMIT_AS, &none);
+    sr_parallel(60, count_thread, &work);
+    setrlimit(RLIMIT_AS, &had);
+    EXPECT_EQUAL_INT(atomic_load(&work.threads), (1ull << 60) - 1);
+    volatile double tiny = 1e-310;
+    EXPECT(tiny * 2 > 0);
 }
 
 TEST(the_clock_runs_and_memory_is_known)
