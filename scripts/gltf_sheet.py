@@ -65,6 +65,8 @@ def main():
     parser.add_argument("--width", type=int, default=320, help="of one picture")
     a = parser.parse_args()
     models = sorted(p for p in a.folder.rglob("*") if p.suffix in (".gltf", ".glb") and a.only in str(p))
+    if not models:
+        sys.exit(f"gltf_sheet.py: {a.folder}: no .gltf or .glb file there" + (f" with '{a.only}' in its name" if a.only else ""))
     width, height, tiles, failed = a.width, a.width * 3 // 4, [], 0
     with tempfile.TemporaryDirectory() as folder:
         for number, model in enumerate(models):
@@ -72,7 +74,7 @@ def main():
             done = subprocess.run([a.steradian, "render", str(model), "--spp", a.spp, "--resolution", f"{width},{height}", "-o", str(out)],
                                   capture_output=True, text=True)
             said = [line for line in done.stderr.splitlines() if "has no camera" not in line and "no lights of its own" not in line]
-            said = [line.replace(str(model) + ": ", "") for line in said if line.startswith(("note", "warning", "error"))]
+            said = [line.replace(str(model) + ": ", "") for line in said if line.startswith(("note", "warning", "steradian"))]
             print(f"row {number // a.columns + 1}, column {number % a.columns + 1}: {model.stem}" + "".join("\n    " + line for line in said), flush=True)
             failed += done.returncode != 0
             tiles.append(tile_of(out, width, height) if done.returncode == 0 else [bytearray(3 * width) for _ in range(height)])
@@ -83,7 +85,7 @@ def main():
         line += [[bytearray(3 * width)] * height] * (a.columns - len(line))
         rows += [b"".join(tile[y] for tile in line) for y in range(height)]
     write_png(a.sheet, width * a.columns, len(rows), rows)
-    return 1 if failed or not models else 0
+    return 1 if failed else 0
 
 
 if __name__ == "__main__":
