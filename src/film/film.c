@@ -207,7 +207,7 @@ void sr_film_pixel_mean(const struct sr_film *film, uint32_t x, uint32_t y, doub
         mean[c] = (p->n ? p->sum[c] / p->n : 0) + sr_film_splat_mean(film, (size_t)y * film->width + x, c);
 }
 
-/* Variance of the mean of w . rgb, or of one channel c. NaN with fewer than two blocks. */
+/* Variance of the mean of channel c; NaN with fewer than two blocks. */
 static double mean_variance(const struct sr_film_pixel *p, int c)
 {
     if (p->blocks < 2)

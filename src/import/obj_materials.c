@@ -289,6 +289,11 @@ static void compose_light(struct sr_compose *c, struct sr_obj_material *m)
     m->area_light1 = sr_compose_area_light(c);
 }
 
+static bool is_glass(const struct sr_obj_material *m)
+{
+    return m->illum == 4 || m->illum == 6 || m->illum == 7 || m->illum == 9;
+}
+
 void sr_obj_material_wear(struct sr_compose *c, struct sr_obj_material *m)
 {
     struct sr_location where = c->where;
@@ -298,12 +303,11 @@ void sr_obj_material_wear(struct sr_compose *c, struct sr_obj_material *m)
         const char *name = m->name;
         for (unsigned k = 2; sr_pbrt_names_find(&c->d->material_names, m->name) && c->error->status == SR_OK; ++k)
             m->name = sr_compose_printf(c, "%.900s (%u)", name, k); // there is an earlier one of the same name
-        bool is_glass = m->illum == 4 || m->illum == 6 || m->illum == 7 || m->illum == 9;
         bool is_metal =
             (is_black(m->Kd) && !m->map_Kd.path && !is_black(m->Ks) && m->Pm < 0) || (m->illum == 3 && is_black(m->Kd));
         bool shines = m->Pr >= 0 || m->Pm >= 0 || m->map_Pr.path || m->map_Pm.path ||
                       (!is_black(m->Ks) && m->Ns > 0 && m->illum != 0 && m->illum != 1);
-        struct maps maps = {.colour = is_glass || is_metal
+        struct maps maps = {.colour = is_glass(m) || is_metal
                                           ? NULL
                                           : compose_map(c, m, &m->map_Kd, "map_Kd", false,
                                                         m->has_Kd && !is_black(m->Kd) ? mean(clamp(m->Kd)) : 1),
@@ -314,7 +318,7 @@ void sr_obj_material_wear(struct sr_compose *c, struct sr_obj_material *m)
         maps.normal = normal && sr_file_exists(normal) ? m->map_normal.path : NULL;
         if (m->map_Ks.path)
             sr_compose_warn(c, "material \"%.100s\": map_Ks is left out", m->name);
-        if (is_glass)
+        if (is_glass(m))
             compose_glass(c, m, &maps);
         else if (is_metal)
             compose_metal(c, m, &maps);
@@ -334,11 +338,10 @@ void sr_obj_material_wear(struct sr_compose *c, struct sr_obj_material *m)
 
 void sr_obj_material_alpha(struct sr_compose *c, const struct sr_obj_material *m)
 {
+    if (is_glass(m))
+        return;
     struct sr_obj_material copy = *m;
     const char *name = sr_compose_printf(c, "%.400s, map_d", m->name);
-    bool is_glass = m->illum == 4 || m->illum == 6 || m->illum == 7 || m->illum == 9;
-    if (is_glass)
-        return;
     if (m->map_d.path &&
         (sr_pbrt_names_find(&c->d->float_textures, name) || compose_map(c, &copy, &m->map_d, "map_d", true, m->d)))
         sr_compose_texture_name(c, "alpha", name);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The plain twin of the path tracer: no weighing of two strategies, no roulette, lights chosen uniformly by power.
+/* The plain twin of the path tracer: no weighing of two strategies, no roulette.
  *
  *     L(x, wo) = Le(x, wo) + integral f(wo, wi) L(x, wi) |cos theta_i| dwi        [W m^-2 sr^-1 nm^-1]
  *

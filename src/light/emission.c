@@ -84,13 +84,10 @@ sr_status sr_light_check_texels(const struct sr_texels *t, const char *filename,
 
 double sr_light_mean_luminance(const struct sr_texels *t)
 {
-    const double *y_of_rgb = sr_colour_space(t->space)->xyz_from_rgb[1];
     double sum = 0;
     for (uint32_t y = 0; y < t->height; ++y)
-        for (uint32_t x = 0; x < t->width; ++x) {
-            struct sr_rgb c = sr_light_texel(t, x, y);
-            sum += y_of_rgb[0] * (double)c.r + y_of_rgb[1] * (double)c.g + y_of_rgb[2] * (double)c.b;
-        }
+        for (uint32_t x = 0; x < t->width; ++x)
+            sum += sr_light_texel_luminance(t, x, y);
     return sum / ((double)t->width * t->height);
 }
 

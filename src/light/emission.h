@@ -38,6 +38,12 @@ static inline struct sr_rgb sr_light_texel(const struct sr_texels *t, uint32_t x
                  : (struct sr_rgb){t->floats[i], t->floats[i + g], t->floats[i + b]};
     return (struct sr_rgb){c.r > 0 ? c.r : 0, c.g > 0 ? c.g : 0, c.b > 0 ? c.b : 0};
 }
+static inline double sr_light_texel_luminance(const struct sr_texels *t, uint32_t x, uint32_t y) // of white: 1
+{
+    const double *y_of_rgb = sr_colour_space(t->space)->xyz_from_rgb[1];
+    struct sr_rgb c = sr_light_texel(t, x, y);
+    return y_of_rgb[0] * (double)c.r + y_of_rgb[1] * (double)c.g + y_of_rgb[2] * (double)c.b;
+}
 
 /* Where light that travels against wi enters the scene: on a disk as wide as the scene's sphere, before it. */
 static inline sr_vec3 sr_light_outside(sr_vec3 centre, float radius, sr_vec3 wi, sr_vec2 u)

@@ -13,7 +13,6 @@
  * the surface's own choice. A uniform sky is never drawn at all, for the same reason. Estimators without such a choice
  * must not use it. */
 #include "light/infinite.h"
-#include "light/pixels.h"
 
 enum { MOST_CELLS = 1 << 22 }; // 80 MiB
 
@@ -32,35 +31,24 @@ const struct sr_param sr_infinite_params[] = {
 
 static void set_directions(struct sr_infinite *m)
 {
-    const struct sr_transform *t = &m->common.light_to_world;
-    const float(*a)[3] = (const float(*)[3])m->to_light;
-    for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j)
-            m->to_light[i][j] = t->inverse[i][j];
-        m->columns[i] = (sr_vec3){t->m[0][i], t->m[1][i], t->m[2][i]};
-    }
-    m->determinant =
-        fabsf(a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
-              a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]));
+    m->turn = sr_light_turn_of(&m->common.light_to_world);
+    const sr_vec3 *columns = m->turn.columns;
     m->is_rotation = true;
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j <= i; ++j)
-            m->is_rotation &= fabsf(sr_dot(m->columns[i], m->columns[j]) - (float)(i == j)) < 1e-6f;
+            m->is_rotation &= fabsf(sr_dot(columns[i], columns[j]) - (float)(i == j)) < 1e-6f;
 }
 
 // illuminance on the side of +z, were the factor 1 [lx]
 static double upper_illuminance(const struct sr_texels *t)
 {
-    const double *y_of_rgb = sr_colour_space(t->space)->xyz_from_rgb[1];
     double sum = 0;
     for (uint32_t y = 0; y < t->height; ++y)
         for (uint32_t x = 0; x < t->width; ++x) {
             sr_vec2 p = {((float)x + 0.5f) / (float)t->width, ((float)y + 0.5f) / (float)t->height};
             float cos_theta = sr_equal_area_square_to_sphere(p).z;
-            struct sr_rgb c = sr_light_texel(t, x, y);
             if (cos_theta > 0)
-                sum += (double)cos_theta *
-                       (y_of_rgb[0] * (double)c.r + y_of_rgb[1] * (double)c.g + y_of_rgb[2] * (double)c.b);
+                sum += (double)cos_theta * sr_light_texel_luminance(t, x, y);
         }
     return sum * 4 * (double)SR_PI / ((double)t->width * t->height);
 }
@@ -99,8 +87,7 @@ static sr_status build_density(struct sr_infinite *m, struct sr_arena *arena, st
         return sr_fail(error, SR_ERROR_RESOURCE, "no memory for the density of %s", m->filename);
     double sum = 0, max = 0;
     for (size_t i = 0; i < n; ++i) {
-        struct sr_rgb c = sr_light_texel(t, (uint32_t)(i % t->width), (uint32_t)(i / t->width));
-        f[i] = (c.r + c.g + c.b) / 3;
+        f[i] = sr_light_grey(t, (uint32_t)(i % t->width), (uint32_t)(i / t->width));
         sum += (double)f[i];
         max = fmax(max, (double)f[i]);
     }
@@ -162,27 +149,17 @@ static void place(void *self, sr_vec3 scene_centre, float scene_radius)
 // unit direction in the world to the square; *jacobian: solid angle of the image over that of the world
 static sr_vec2 square(const struct sr_infinite *m, sr_vec3 wi, float *jacobian)
 {
-    const float(*a)[3] = (const float(*)[3])m->to_light;
-    sr_vec3 d = {a[0][0] * wi.x + a[0][1] * wi.y + a[0][2] * wi.z, a[1][0] * wi.x + a[1][1] * wi.y + a[1][2] * wi.z,
-                 a[2][0] * wi.x + a[2][1] * wi.y + a[2][2] * wi.z};
+    if (SR_UNLIKELY(!m->is_rotation))
+        return sr_equal_area_sphere_to_square(sr_light_turned(&m->turn, wi, jacobian));
     *jacobian = 1;
-    if (SR_LIKELY(m->is_rotation))
-        return sr_equal_area_sphere_to_square(d);
-    float inverse_length = 1 / sr_length(d);
-    *jacobian = m->determinant * inverse_length * inverse_length * inverse_length;
-    return sr_equal_area_sphere_to_square(sr_scale(inverse_length, d));
-}
-
-static inline size_t texel_index(float u, uint32_t n)
-{
-    float i = u * (float)n;
-    return i > 0 ? (size_t)sr_min(i, (float)(n - 1)) : 0;
+    const sr_vec3 *rows = m->turn.rows;
+    return sr_equal_area_sphere_to_square((sr_vec3){sr_dot(rows[0], wi), sr_dot(rows[1], wi), sr_dot(rows[2], wi)});
 }
 
 static inline struct cell look_up(const struct sr_infinite *m, sr_vec2 p)
 {
     const struct sr_texels *t = &m->common.texels;
-    size_t i = texel_index(p.y, t->height) * t->width + texel_index(p.x, t->width);
+    size_t i = (size_t)sr_light_texel_index(p.y, t->height) * t->width + sr_light_texel_index(p.x, t->width);
     return m->cells ? m->cells[i] : cell_of(m, i);
 }
 
@@ -235,12 +212,12 @@ static bool sample(const void *self, const struct sr_point *reference, sr_vec2 u
     if (!(pdf > 0))
         return false;
     sr_vec3 d = sr_equal_area_square_to_sphere(p);
-    sr_vec3 wi =
-        sr_add(sr_add(sr_scale(d.x, m->columns[0]), sr_scale(d.y, m->columns[1])), sr_scale(d.z, m->columns[2]));
+    const sr_vec3 *columns = m->turn.columns;
+    sr_vec3 wi = sr_add(sr_add(sr_scale(d.x, columns[0]), sr_scale(d.y, columns[1])), sr_scale(d.z, columns[2]));
     float jacobian = 1;
     if (SR_UNLIKELY(!m->is_rotation)) { // |A d| = 1 / |A^-1 wi| for the unit vector wi along A d
         float length = sr_length(wi);
-        jacobian = m->determinant * length * length * length;
+        jacobian = m->turn.determinant * length * length * length;
         wi = sr_scale(1 / length, wi);
     }
     *s = (struct sr_light_sample){
@@ -298,8 +275,7 @@ static bool emit(const void *self, sr_vec2 u_place, sr_vec2 u_direction, const s
     sr_vec3 d = sr_equal_area_square_to_sphere(sr_infinite_is_image(m) ? p : u_direction);
     sr_vec3 wi = d;
     if (sr_infinite_is_image(m))
-        wi = sr_normalize(
-            sr_add(sr_add(sr_scale(d.x, m->columns[0]), sr_scale(d.y, m->columns[1])), sr_scale(d.z, m->columns[2])));
+        wi = sr_light_turned_back(&m->turn, d);
     *ray = (struct sr_light_ray){.from = {.p = sr_light_outside(m->centre, m->radius, wi, u_place)},
                                  .w = sr_neg(wi),
                                  .L = sr_infinite_is_image(m) ? cell_Le(m, look_up(m, p), w) : sr_spd_along(&m->L, w),

@@ -3,7 +3,7 @@
 #ifndef SR_LIGHT_INFINITE_H
 #define SR_LIGHT_INFINITE_H
 
-#include "light/emission.h"
+#include "light/pixels.h"
 
 /* What a texel radiates, scale times sigmoid times white, and how densely it is drawn: in one place, for one look-up.
  */
@@ -24,13 +24,11 @@ struct sr_infinite {
     const struct sr_table *white; // of those
     const struct cell *cells;     // one a texel; NULL: too many
     struct sr_piecewise2 density; // over the square
-    float to_light[3][3];         // world to light
-    sr_vec3 columns[3];           // light to world
-    float determinant;            // of to_light: a transform that is no rotation squeezes solid angles
-    bool is_rotation;             // or a mirror
-    float luminance, choice;      // [cd/m^2] mean over the sphere
-    sr_vec3 centre;               // of the scene's sphere [m]
-    float radius;                 // [m]
+    struct sr_light_turn turn;
+    bool is_rotation;        // or a mirror: solid angles stay
+    float luminance, choice; // [cd/m^2] mean over the sphere
+    sr_vec3 centre;          // of the scene's sphere [m]
+    float radius;            // [m]
 };
 
 extern const struct sr_param sr_infinite_params[];

@@ -87,14 +87,11 @@ static void convert_row(void *context, uint64_t y)
 // mean over the sphere: rows count by their solid angle
 static double mean_of_map(const struct sr_texels *t)
 {
-    const double *y_of_rgb = sr_colour_space(t->space)->xyz_from_rgb[1];
     double sum = 0;
     for (uint32_t y = 0; y < t->height; ++y) {
         double share = (cos((double)SR_PI * y / t->height) - cos((double)SR_PI * (y + 1) / t->height)) / 2, row = 0;
-        for (uint32_t x = 0; x < t->width; ++x) {
-            struct sr_rgb c = sr_light_texel(t, x, y);
-            row += y_of_rgb[0] * (double)c.r + y_of_rgb[1] * (double)c.g + y_of_rgb[2] * (double)c.b;
-        }
+        for (uint32_t x = 0; x < t->width; ++x)
+            row += sr_light_texel_luminance(t, x, y);
         sum += share * row / t->width;
     }
     return sum;

@@ -187,7 +187,6 @@ static double density_of_cell(const struct portal *m, uint32_t i, uint32_t j, in
 static double passing(const struct portal *m)
 {
     const struct sr_texels *t = &m->sky.common.texels;
-    const double *y_of_rgb = sr_colour_space(t->space)->xyz_from_rgb[1];
     struct sr_light_turn turn = sr_light_turn_of(&m->sky.common.light_to_world);
     uint32_t side = 2 * t->width;
     double sum = 0;
@@ -200,9 +199,7 @@ static double passing(const struct portal *m)
         if (cos_theta <= 0)
             continue;
         sr_light_turned(&turn, wi, &jacobian);
-        struct sr_rgb c = sr_light_texel(t, x / 2, y / 2);
-        sum += (double)(cos_theta / jacobian) *
-               (y_of_rgb[0] * (double)c.r + y_of_rgb[1] * (double)c.g + y_of_rgb[2] * (double)c.b);
+        sum += (double)(cos_theta / jacobian) * sr_light_texel_luminance(t, x / 2, y / 2);
     }
     return sum * 4 * (double)SR_PI / ((double)side * side);
 }

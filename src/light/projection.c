@@ -56,15 +56,13 @@ static sr_status build_density(struct projection *m, double *flux, float *grey, 
                                struct sr_error *error)
 {
     const struct sr_texels *t = &m->common.texels;
-    const double *y_of_rgb = sr_colour_space(t->space)->xyz_from_rgb[1];
     size_t n = (size_t)t->width * t->height;
     float *f = sr_alloc(n * sizeof *f);
     double sum = 0, sum_grey = 0;
     for (size_t i = 0; f && i < n; ++i) {
         uint32_t x = (uint32_t)(i % t->width), y = (uint32_t)(i / t->width);
-        struct sr_rgb c = sr_light_texel(t, x, y);
         double angle = texel_solid_angle(m, x, y);
-        sum += angle * (y_of_rgb[0] * (double)c.r + y_of_rgb[1] * (double)c.g + y_of_rgb[2] * (double)c.b);
+        sum += angle * sr_light_texel_luminance(t, x, y);
         sum_grey += (double)sr_light_grey(t, x, y) / (double)n;
         f[i] = (float)angle * (float)n * sr_light_grey(t, x, y);
     }

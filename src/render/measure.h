@@ -31,7 +31,6 @@ bool measure_sample(const struct measuring *m, uint32_t replicate, uint32_t samp
 /* Adds what arrives at a path's wavelengths to channels; false: not finite, and not added. */
 bool measure_add(const struct measuring *m, sr_spectrum X, const struct sr_wavelengths *w, double *channels,
                  double *looked_at);
-/* Where that sample is taken; false: nowhere. */
 /* Where a meter stands is known to a micrometre or, in scenes smaller than that allows, to eight roundings of their
  * size: a surface there may be on its other side. (A ground to the horizon is no size to go by.) */
 static inline void measure_settle(const struct sr_scene *scene, struct sr_meter_place *at)
@@ -39,6 +38,7 @@ static inline void measure_settle(const struct sr_scene *scene, struct sr_meter_
     float off = sr_min(1e-6f, 0x1p-21f * sr_max_component(sr_box_diagonal(sr_scene_bounds(scene)))); // [m]
     at->x.p_error = sr_add(at->x.p_error, (sr_vec3){off, off, off});
 }
+/* Where that sample is taken; false: nowhere. */
 bool measure_place(const struct measuring *m, uint32_t replicate, uint32_t sample, struct sr_meter_place *at);
 /* Adds samples [begin, end) of a replicate; false: cancelled, the sums are of no use. */
 bool measure_run(const struct measuring *m, uint32_t replicate, uint64_t begin, uint64_t end,

@@ -43,8 +43,8 @@ struct run {
 bool sr_run_is_cancelled(struct run *run);
 void sr_run_remember_dropped(struct run *run, uint32_t x, uint32_t y, uint32_t replicate, uint32_t sample);
 void sr_run_count(struct run *run, const struct sr_render_counts *c);
-/* One unit, with a thread's own memory. Cancelled, the pixels that are done come in, and it is false; with splats that
- * takes one pixel's block at most, without no time. */
+/* One unit, with a thread's own memory. When it is cancelled it stores the pixels that are done and returns false: at
+ * once, or, with splats, when the pixel at hand is done, for its splats cannot be taken back. */
 bool sr_run_do_unit(struct run *run, uint64_t unit, struct sr_film_block *scratch, double *buckets,
                     struct sr_block_tree *tree, struct sr_splatting *splatting, struct sr_worker *worker);
 
