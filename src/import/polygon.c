@@ -82,7 +82,7 @@ bool sr_polygon_triangulate(const sr_vec3 *P, const int32_t *corners, uint32_t s
     }
     for (uint32_t i = 0; i < n; ++i)
         left[i] = i;
-    for (uint32_t i = 0, passed = 0; n > 3 && passed<n && * budget> 0;) {
+    for (uint32_t i = 0, passed = 0; *budget > 0 && n > 3 && passed < n;) {
         i %= n;
         if (!is_ear(q, left, n, i, budget)) {
             ++i;

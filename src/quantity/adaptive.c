@@ -77,7 +77,7 @@ void sr_integrate(sr_integrand *f, void *context, const double *breaks, int coun
             v[n] = (struct interval){.a = breaks[i], .b = breaks[i + 1]};
             measure(f, context, tolerance, &v[n++]);
         }
-    while (n > 0 && n<most && * budget> 0) {
+    while (*budget > 0 && n > 0 && n < most) {
         double left = 0;
         int worst = 0;
         for (int i = 0; i < n; ++i) {
