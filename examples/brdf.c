@@ -24,7 +24,8 @@ int main(void)
         wo[k][0] = (float)sin(theta), wo[k][1] = 0, wo[k][2] = (float)cos(theta);
         wi[k][0] = -sqrtf(0.5f), wi[k][1] = 0, wi[k][2] = sqrtf(0.5f);
     }
-    sr_brdf_evaluate(paint, 550, 91, wo, wi, f, pdf);
+    // C before C23 adds no const to arrays of arrays by itself
+    sr_brdf_evaluate(paint, 550, 91, (const float(*)[3])wo, (const float(*)[3])wi, f, pdf);
     for (int k = 15; k <= 90; k += 15)
         printf("theta_o %4d deg: f = %.5f 1/sr, pdf = %.5f 1/sr\n", 2 * k - 90, f[k], pdf[k]);
 

@@ -48,14 +48,14 @@ with_package() {
 cp "$consumer/consumer.c" "$folder/consumer.cpp"
 echo "== pkg-config, C"
 # shellcheck disable=SC2086 # a list of words
-with_package "$cc" -std=c17 -Wall -Wextra -Werror $flags -o "$folder/consumer_c" "$consumer/consumer.c"
+with_package "$cc" -std=c17 -Wall -Wextra -Wpedantic -Wconversion -Werror $flags -o "$folder/consumer_c" "$consumer/consumer.c"
 "$folder/consumer_c" "$scene"
 # shellcheck disable=SC2086
-with_package "$cc" -std=c17 -Wall -Wextra -Werror $flags -o "$folder/brdf" "$source_dir/examples/brdf.c"
+with_package "$cc" -std=c17 -Wall -Wextra -Wpedantic -Wconversion -Werror $flags -o "$folder/brdf" "$source_dir/examples/brdf.c"
 "$folder/brdf"
 echo "== pkg-config, C++"
 # shellcheck disable=SC2086
-with_package "$cxx" -std=c++17 -Wall -Wextra -Werror $flags -o "$folder/consumer_cxx" "$folder/consumer.cpp"
+with_package "$cxx" -std=c++17 -Wall -Wextra -Wpedantic -Wconversion -Werror $flags -o "$folder/consumer_cxx" "$folder/consumer.cpp"
 "$folder/consumer_cxx" "$scene"
 
 echo "== CMake, C and C++"

@@ -77,6 +77,27 @@ TEST(signal_terminate_writes_what_there_is)
     expect_interrupted(SIGTERM, 143);
 }
 
+/* The terminal or the connection has ended. */
+TEST(signal_hangup_writes_what_there_is)
+{
+    signal(SIGHUP, SIG_DFL);
+    expect_interrupted(SIGHUP, 129);
+}
+
+TEST(signal_hangup_does_not_matter_under_nohup)
+{
+    remove_file("stopped.exr");
+    signal(SIGHUP, SIG_IGN); // children inherit it
+    pid_t pid = start(STEADY "stopped.exr");
+    signal(SIGHUP, SIG_DFL);
+    send_when_there(pid, SIGHUP, "stopped.exr");
+    nap(0.3);
+    EXPECT_EQUAL_INT(kill(pid, 0), 0);
+    remove_file("stopped.exr");
+    send_when_there(pid, SIGTERM, "stopped.exr"); // another partial picture has come: it renders
+    EXPECT_EQUAL_INT(finish(pid)->code, 143);
+}
+
 TEST(signal_a_second_one_ends_at_once)
 {
     remove_file("twice.exr");

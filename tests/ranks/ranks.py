@@ -70,6 +70,19 @@ def one_for_a_node(p):
     print("one scene for a node: 2 of 3 ranks wait")
 
 
+def unit_logs(p):
+    """A log that cannot be written is told by the exit code, and a file that is none stays."""
+    render = [SCENE, "--resolution", "8,8", "--spp", "1", "-o", "log.exr", "--quiet", "--unit-log"]
+    said = p.run(p.ranks(2, *render, "/dev/full"), 4)
+    expect("the unit log could not be written" in said, said)
+    p.run(p.ranks(2, *render, "kept.tsv"))
+    p.run(p.ranks(2, *render, "kept.tsv"))
+    before = hash_of(p.folder / "log.exr")
+    said = p.run(p.ranks(2, *render, "log.exr"), 4)
+    expect("log.exr: is no unit log" in said and hash_of(p.folder / "log.exr") == before, said)
+    print("unit logs: none lost, none silently")
+
+
 def rehearsal(p):
     """The simulator's time, messages and bytes are those of real deals, where the machine has time for them."""
     folder = pathlib.Path(p.together).parent
@@ -171,6 +184,7 @@ def main():
         try:
             same_bytes(p)
             one_for_a_node(p)
+            unit_logs(p)
             rehearsal(p)
             refusals(p)
             lost_rank(p, is_slow)

@@ -159,6 +159,7 @@ static int render_with_others(int argc, char **argv, const struct options *o)
     if (crew.place.rank > 0) { // rank 0 is asked, and says when all is over
         signal(SIGINT, SIG_IGN);
         signal(SIGTERM, SIG_IGN);
+        signal(SIGHUP, SIG_IGN);
         signal(SIGUSR1, SIG_IGN);
     }
     if (!own->threads)
@@ -181,8 +182,7 @@ static int render_with_others(int argc, char **argv, const struct options *o)
         pthread_detach(thread);
     }
     int code = pump(&crew, &task.ending);
-    unit_log_close(&crew);
-    return code;
+    return unit_log_close(&crew) || code ? code : SR_ERROR_RESOURCE;
 }
 
 int main(int argc, char **argv)

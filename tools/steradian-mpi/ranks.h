@@ -85,7 +85,7 @@ extern _Thread_local int crew_taking_from; // the rank whose units are being tak
 /* NULL, and for helpers: none. false: it cannot be written, which has been told. */
 bool unit_log_open(struct crew *c, const char *path);
 void unit_log_note(struct crew *c, const struct sr_crew_unit *u);
-void unit_log_close(struct crew *c);
+bool unit_log_close(struct crew *c);
 
 /* ---- pump.c: MPI's side ---- */
 

@@ -30,7 +30,7 @@ static const char help[] =
     "\n"
     "Examples:\n"
     "  steradian brdf measure grooves.pbrt -o grooves.txt --patch -0.1,0.1,-0.1,0.1 --azimuths 12\n"
-    "  steradian brdf reflectance grooves.txt --wi 30\n";
+    "  steradian brdf reflectance grooves.txt --from direction:30 --to hemisphere\n";
 
 struct arguments {
     const char *scene, *output;

@@ -12,7 +12,7 @@
 #include <jansson.h>
 
 /* One file each: arguments, calls, printing. Returns the exit code: 0 done, 1 a check failed or a target was missed,
- * 2 usage, 3 bad input, 4 out of resources, 130 or 143 interrupted. */
+ * 2 usage, 3 bad input, 4 out of resources, 129, 130 or 143 interrupted. */
 struct command {
     const char *name, *summary, *help; // help NULL: it has subcommands, and helps by itself
     int (*run)(int argc, char **argv);

@@ -16,15 +16,16 @@ static void print_help(FILE *out)
     fprintf(out, "steradian: light, computed and measured\n\nUsage: steradian SUBCOMMAND [OPTIONS] …\n\n");
     for (int i = 0; i < COMMANDS; ++i)
         fprintf(out, "  %-10s %s\n", commands[i]->name, commands[i]->summary);
-    fprintf(out,
-            "\n'steradian SUBCOMMAND --help' tells more, with examples. 'steradian --version' tells the version.\n\n"
-            "Examples:\n"
-            "  steradian render scenes/cornell-box.pbrt -o cornell.exr -o cornell.png\n"
-            "  steradian info cornell.exr\n"
-            "  steradian compare cornell.exr reference.exr -o difference.png --max-z 5\n"
-            "  steradian image cornell.exr -o cornell.png --exposure -4 --tone filmic\n"
-            "\n"
-            "Exit codes: 0 done, 1 a check failed, 2 usage, 3 bad input, 4 out of resources, 130/143 interrupted.\n");
+    fprintf(
+        out,
+        "\n'steradian SUBCOMMAND --help' tells more, with examples. 'steradian --version' tells the version.\n\n"
+        "Examples:\n"
+        "  steradian render scenes/cornell-box.pbrt -o cornell.exr -o cornell.png\n"
+        "  steradian info cornell.exr\n"
+        "  steradian compare cornell.exr reference.exr -o difference.png --max-z 5\n"
+        "  steradian image cornell.exr -o cornell.png --exposure -4 --tone filmic\n"
+        "\n"
+        "Exit codes: 0 done, 1 a check failed, 2 usage, 3 bad input, 4 out of resources, 129/130/143 interrupted.\n");
 }
 
 static int run(int argc, char **argv)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* steradian measure: the power balance of a scene, and the table of a goniophotometer. */
 #include "measure_command.h"
+#include "render_command.h"
 
 #include "measured/measured.h"
 
@@ -53,7 +54,7 @@ int measure_balance(const struct measure_arguments *a, const struct sr_render_jo
     sr_status status = sr_measure_balance(job, &a->settings, &arena, &b, &error);
     if (status != SR_OK) {
         sr_arena_free(&arena);
-        return status == SR_CANCELLED ? 130 : command_fail("measure", &error);
+        return status == SR_CANCELLED ? render_interrupt_exit() : command_fail("measure", &error);
     }
     int code = 0;
     if (a->json) {

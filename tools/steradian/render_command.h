@@ -90,12 +90,13 @@ sr_status render_write_outputs(const struct rendering *r, const struct sr_film *
 
 /* SIGUSR1 asks for a partial picture; from the first moment, so that it never kills. */
 void render_catch_requests(void);
-/* SIGINT and SIGTERM end the program at once, by 130 or 143: while it loads. */
+/* SIGINT, SIGTERM and SIGHUP (unless it is ignored: nohup) end the program at once, by 130, 143 or 129: while it loads.
+ */
 void render_end_by_interrupts(void);
 /* They end the work, and what there is gets written; a second one ends the program at once. */
 void render_catch_interrupts(void);
 extern atomic_bool render_interrupted;
-int render_interrupt_exit(void); // 130 or 143
+int render_interrupt_exit(void); // 130, 143 or 129
 void render_on_progress(void *user, const struct sr_render_progress *p);
 
 /* ---- render_keep.c ---- */

@@ -138,6 +138,9 @@ void render_end_by_interrupts(void)
 {
     catch (SIGINT, on_interrupt);
     catch (SIGTERM, on_interrupt);
+    struct sigaction before; // a terminal or a connection that ends; nohup says that it does not matter
+    if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+        catch (SIGHUP, on_interrupt);
 }
 
 void render_catch_interrupts(void)

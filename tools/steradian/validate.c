@@ -28,7 +28,7 @@ static const char help[] =
     "      --markdown FILE    the table as a page as well\n"
     "      --json             the table as JSON\n"
     "\n"
-    "Exit codes: 0 all pass, 1 one does not, 2 usage, 3 a bad table or scene, 4 out of resources, 130/143 interrupted.\n"
+    "Exit codes: 0 all pass, 1 one does not, 2 usage, 3 a bad table or scene, 4 out of resources, 129/130/143 interrupted.\n"
     "\n"
     "Examples:\n"
     "  steradian validate\n"
