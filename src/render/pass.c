@@ -114,6 +114,71 @@ static void try_sample(const void *picture, uint32_t x, uint32_t y, const struct
     sr_picture_samples(picture, x, y, sampler, 1, false, &sample, worker);
 }
 
+/* Memory for each thread, and which blocks a resumed film has had. */
+static sr_status make_room(struct run *run, int threads, struct sr_arena *arena, struct sr_error *error)
+{
+    const struct sr_film *film = run->film;
+    bool is_resumed = run->pass->keeper && run->pass->keeper->kept.is_resumed;
+    size_t n = (size_t)threads, places = n * run->tile * run->tile, pixels = (size_t)film->width * film->height;
+    uint32_t tiles = run->tiles_x * run->tiles_y, buckets = run->picture.response.buckets;
+    double *tree_buckets = NULL;
+    run->tile_blocks = sr_arena_alloc(arena, tiles * sizeof *run->tile_blocks);
+    run->scratch = sr_arena_alloc(arena, places * sizeof *run->scratch);
+    run->trees = sr_arena_alloc(arena, n * sizeof *run->trees);
+    if (buckets) {
+        run->buckets = sr_arena_alloc(arena, places * buckets * sizeof *run->buckets);
+        tree_buckets = sr_arena_alloc(arena, n * SR_BLOCK_TREE_NODES * buckets * sizeof *tree_buckets);
+    }
+    if (is_resumed)
+        run->had = sr_arena_alloc(arena, pixels * sizeof *run->had);
+    if (!run->tile_blocks || !run->scratch || !run->trees || (is_resumed && !run->had) ||
+        (buckets && (!run->buckets || !tree_buckets)))
+        return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for %d workers", threads);
+    for (size_t i = 0; buckets && i < n; ++i) {
+        run->trees[i].bucket_count = buckets;
+        run->trees[i].buckets = tree_buckets + i * SR_BLOCK_TREE_NODES * buckets;
+    }
+    for (uint32_t i = 0; run->pass->part && i < tiles; ++i)
+        run->tile_blocks[i] = run->first_block;
+    for (size_t i = 0; run->had && i < pixels; ++i)
+        run->had[i] = film->pixels[i].blocks;
+    return run->had ? sr_crew_share(run->job, run->had, pixels, error) : SR_OK;
+}
+
+/* What the integrator does before the first sample; its rays count once, also where a checkpoint goes on. */
+static sr_status begin_integrator(struct run *run, int threads, struct sr_error *error)
+{
+    const struct sr_render_job *job = run->job;
+    const struct sr_render_pass *pass = run->pass;
+    if (!job->integrator.model->begin)
+        return SR_OK;
+    struct sr_worker counted = {0};
+    struct sr_picture_plan plan = {.x0 = (uint32_t)job->film.x0,
+                                   .y0 = (uint32_t)job->film.y0,
+                                   .width = pass->film->width,
+                                   .height = pass->film->height,
+                                   .spp = job->spp,
+                                   .per_replicate = pass->per_replicate,
+                                   .seed = job->seed,
+                                   .sampler = job->sampler,
+                                   .law = run->picture.response.law,
+                                   .jitter_lambda = job->jitter_lambda,
+                                   .threads = threads,
+                                   .try = try_sample,
+                                   .picture = &run->picture,
+                                   .cancel = job->cancel,
+                                   .counted = &counted,
+                                   .remark = run->base.remark};
+    if (job->integrator.model->begin(job->integrator.self, job->scene, &plan, &run->shared, error) != SR_OK)
+        return error->status;
+    if (!run->had) { // else the checkpoint has counted them
+        run->rays = counted.rays;
+        run->shadow_rays = counted.shadow_rays;
+        run->vertices = counted.vertices;
+    }
+    return SR_OK;
+}
+
 sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render_pass *pass,
                          struct sr_render_report *report, struct sr_error *error)
 {
@@ -128,72 +193,20 @@ sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render
         run.first_block = block_of(job->spp, pass->blocks, pass->range.begin);
         run.end_block = block_of(job->spp, pass->blocks, pass->range.end - 1) + 1;
     }
-    sr_picture_begin(&run.picture, job, pass->film);
-    run.tiles_x = (pass->film->width + run.tile - 1) / run.tile;
-    run.tiles_y = (pass->film->height + run.tile - 1) / run.tile;
-    int threads = job->threads > 0 ? job->threads : sr_thread_count();
-    struct sr_arena arena = {0};
-    run.tile_blocks = sr_arena_alloc(&arena, (size_t)run.tiles_x * run.tiles_y * sizeof *run.tile_blocks);
-    run.scratch = sr_arena_alloc(&arena, (size_t)threads * run.tile * run.tile * sizeof *run.scratch);
-    run.trees = sr_arena_alloc(&arena, (size_t)threads * sizeof *run.trees);
-    uint32_t buckets = run.picture.response.buckets;
-    run.buckets =
-        buckets ? sr_arena_alloc(&arena, (size_t)threads * run.tile * run.tile * buckets * sizeof *run.buckets) : NULL;
-    bool is_resumed = pass->keeper && pass->keeper->kept.is_resumed;
-    size_t pixels = (size_t)pass->film->width * pass->film->height;
-    run.had = is_resumed ? sr_arena_alloc(&arena, pixels * sizeof *run.had) : NULL;
-    double *tree_buckets =
-        buckets ? sr_arena_alloc(&arena, (size_t)threads * SR_BLOCK_TREE_NODES * buckets * sizeof *tree_buckets) : NULL;
-    if (!run.tile_blocks || !run.scratch || !run.trees || (is_resumed && !run.had) ||
-        (buckets && (!run.buckets || !tree_buckets))) {
-        sr_arena_free(&arena);
-        return sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for %d workers", threads);
-    }
-    for (int i = 0; buckets && i < threads; ++i) {
-        run.trees[i].bucket_count = buckets;
-        run.trees[i].buckets = tree_buckets + (size_t)i * SR_BLOCK_TREE_NODES * buckets;
-    }
-    for (size_t i = 0; run.had && i < pixels; ++i)
-        run.had[i] = pass->film->pixels[i].blocks;
-    if (run.had && sr_crew_share(job, run.had, pixels, error) != SR_OK) {
-        sr_arena_free(&arena);
-        return error->status;
-    }
-    for (uint32_t i = 0; pass->part && i < run.tiles_x * run.tiles_y; ++i)
-        run.tile_blocks[i] = run.first_block;
     if (report->dropped) {
         run.has_dropped = true;
         memcpy(run.first_dropped,
                (uint32_t[4]){report->dropped_x, report->dropped_y, report->dropped_replicate, report->dropped_sample},
                sizeof run.first_dropped);
     }
-    const struct sr_integrator *integrator = &job->integrator;
-    struct sr_worker counted = {0};
-    struct sr_picture_plan plan = {.x0 = (uint32_t)job->film.x0,
-                                   .y0 = (uint32_t)job->film.y0,
-                                   .width = pass->film->width,
-                                   .height = pass->film->height,
-                                   .spp = job->spp,
-                                   .per_replicate = pass->per_replicate,
-                                   .seed = job->seed,
-                                   .sampler = job->sampler,
-                                   .law = run.picture.response.law,
-                                   .jitter_lambda = job->jitter_lambda,
-                                   .threads = threads,
-                                   .try = try_sample,
-                                   .picture = &run.picture,
-                                   .cancel = job->cancel,
-                                   .counted = &counted,
-                                   .remark = run.base.remark};
-    if (integrator->model->begin &&
-        integrator->model->begin(integrator->self, job->scene, &plan, &run.shared, error) != SR_OK) {
+    sr_picture_begin(&run.picture, job, pass->film);
+    run.tiles_x = (pass->film->width + run.tile - 1) / run.tile;
+    run.tiles_y = (pass->film->height + run.tile - 1) / run.tile;
+    int threads = job->threads > 0 ? job->threads : sr_thread_count();
+    struct sr_arena arena = {0};
+    if (make_room(&run, threads, &arena, error) != SR_OK || begin_integrator(&run, threads, error) != SR_OK) {
         sr_arena_free(&arena);
         return error->status;
-    }
-    if (!is_resumed) { // else the checkpoint has counted them
-        run.rays = counted.rays;
-        run.shadow_rays = counted.shadow_rays;
-        run.vertices = counted.vertices;
     }
     sr_gate_begin(&run);
     struct sr_keeper_view view = sr_gate_view(&run);
@@ -205,7 +218,7 @@ sr_status sr_render_pass(const struct sr_render_job *job, const struct sr_render
     if ((run.cancelled || status != SR_OK) && pass->keeper)
         sr_keeper_write(pass->keeper, report, sr_run_share(&run, run.units_done));
     if (run.shared)
-        integrator->model->end(run.shared);
+        job->integrator.model->end(run.shared);
     sr_arena_free(&arena);
     return status == SR_OK && run.cancelled ? SR_CANCELLED : status;
 }

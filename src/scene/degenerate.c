@@ -27,12 +27,6 @@ static bool has_large_vertex(struct sr_slice P)
     return false;
 }
 
-static void no_memory(struct sr_scene *scene)
-{
-    sr_fail(&scene->error, SR_ERROR_RESOURCE, "not enough memory for the scene (%zu MiB so far)",
-            scene->arena.total >> 20);
-}
-
 void scene_count_degenerate(struct sr_scene *scene, const struct sr_shape_def *def)
 {
     const struct sr_shape *s = &def->shape;
@@ -68,7 +62,7 @@ void scene_count_degenerate(struct sr_scene *scene, const struct sr_shape_def *d
     if (slot)
         *slot = d;
     else
-        no_memory(scene);
+        scene_no_memory(scene);
 }
 
 /* ---- telling: once for each file and kind ---- */

@@ -100,6 +100,7 @@ struct degenerate {
 };
 
 /* Counted so that nothing is lost in silence. */
+void scene_no_memory(struct sr_scene *scene);
 void scene_count_degenerate(struct sr_scene *scene, const struct sr_shape_def *def);
 void scene_find_media(struct sr_scene *scene);  // once rays can be cast
 void scene_find_closed(struct sr_scene *scene); // once the instances are there

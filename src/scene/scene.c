@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-static void no_memory(struct sr_scene *scene)
+void scene_no_memory(struct sr_scene *scene)
 {
     sr_fail(&scene->error, SR_ERROR_RESOURCE, "not enough memory for the scene (%zu MiB so far)",
             scene->arena.total >> 20);
@@ -58,7 +58,7 @@ sr_object_id sr_scene_add_object(struct sr_scene *scene)
     if (slot)
         *slot = sr_arena_alloc(&scene->arena, sizeof **slot);
     if (!slot || !*slot)
-        no_memory(scene);
+        scene_no_memory(scene);
     else
         (*slot)->number = (uint32_t)scene->objects.count - 1;
     return (sr_object_id){(uint32_t)scene->objects.count - 1}; // the world is the first, its handle "none"
@@ -83,14 +83,14 @@ void sr_scene_add_shape(struct sr_scene *scene, const struct sr_shape_def *def)
         if (mover)
             *mover = (struct mover_def){def->object, id, def->motion};
         else
-            no_memory(scene);
+            scene_no_memory(scene);
         if (scene->error.status != SR_OK)
             return;
     }
     struct object *object = ((struct object **)scene->objects.data)[id.index1];
     struct sr_shape_def *copy = sr_array_push(&object->defs, sizeof *copy);
     if (!copy) {
-        no_memory(scene);
+        scene_no_memory(scene);
         return;
     }
     *copy = *def;
@@ -102,7 +102,7 @@ static void add_instance(struct sr_scene *scene, struct instance_def def)
         return;
     struct instance_def *copy = sr_array_push(&scene->instance_defs, sizeof *copy);
     if (!copy)
-        no_memory(scene);
+        scene_no_memory(scene);
     else
         *copy = def;
 }
@@ -146,7 +146,7 @@ void sr_scene_add_light(struct sr_scene *scene, struct sr_light light)
         return;
     struct sr_light *copy = sr_array_push(&scene->light_defs, sizeof *copy);
     if (!copy)
-        no_memory(scene);
+        scene_no_memory(scene);
     else
         *copy = light;
 }
@@ -163,7 +163,7 @@ static uint32_t number_material(struct sr_scene *scene, const struct sr_material
             return (uint32_t)i + 1;
     const struct sr_material **slot = sr_array_push(&scene->material_list, sizeof *slot);
     if (!slot) {
-        no_memory(scene);
+        scene_no_memory(scene);
         return 0;
     }
     *slot = material;
@@ -184,14 +184,14 @@ static uint32_t add_area_lights(struct sr_scene *scene, const struct sr_shape_de
         *per_light = 2;
     }
     if (!shape.self) {
-        no_memory(scene);
+        scene_no_memory(scene);
         return SR_NO_LIGHT;
     }
     uint32_t n = shape.model->primitive_count(shape.self);
     uint32_t first = (uint32_t)scene->light_defs.count;
     struct sr_light_area *areas = sr_arena_alloc(&scene->arena, (size_t)n * sizeof *areas);
     if (!areas || !sr_array_reserve(&scene->light_defs, first + (size_t)n, sizeof(struct sr_light))) {
-        no_memory(scene);
+        scene_no_memory(scene);
         return SR_NO_LIGHT;
     }
     for (uint32_t i = 0; i < n; ++i) {
@@ -219,7 +219,7 @@ static void place_shapes(struct sr_scene *scene, struct object *object, bool is_
     const struct sr_shape_def *defs = object->defs.data;
     object->shapes = sr_arena_alloc(&scene->arena, object->defs.count * sizeof *object->shapes);
     if (!object->shapes) {
-        no_memory(scene);
+        scene_no_memory(scene);
         return;
     }
     for (size_t i = 0; i < object->defs.count; ++i) {
@@ -274,7 +274,7 @@ static void place_lights(struct sr_scene *scene, enum sr_light_choice choice)
     uint32_t n = (uint32_t)scene->light_defs.count;
     struct sr_light *lights = sr_arena_copy(&scene->arena, scene->light_defs.data, n * sizeof *lights);
     if (n && !lights) {
-        no_memory(scene);
+        scene_no_memory(scene);
         return;
     }
     sr_array_free(&scene->light_defs);

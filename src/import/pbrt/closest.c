@@ -32,14 +32,6 @@ struct change {
     const struct family *family;
 };
 
-static const struct sr_pbrt_param *find(const struct sr_pbrt_entity *e, const char *name)
-{
-    for (uint32_t i = 0; i < e->params.count; ++i)
-        if (strcmp(e->params.items[i].name, name) == 0)
-            return &e->params.items[i];
-    return NULL;
-}
-
 /* the next free row of a list that has room */
 static struct sr_pbrt_param *add(struct sr_pbrt_params *to, const struct sr_pbrt_param *p, const char *name)
 {
@@ -100,7 +92,7 @@ static struct sr_pbrt_params room(struct change *c)
 
 static void add_roughness(struct change *c, struct sr_pbrt_params *to)
 {
-    const struct sr_pbrt_param *r = find(c->from, c->family->rough);
+    const struct sr_pbrt_param *r = sr_pbrt_peek(&c->from->params, c->family->rough);
     if (r && r->type == SR_PBRT_TEXTURE) {
         const char *squared = named(c, "roughness squared");
         struct sr_pbrt_params params = room(c);
@@ -123,10 +115,11 @@ static void add_roughness(struct change *c, struct sr_pbrt_params *to)
 static const char *add_part(struct change *c, bool is_metal, bool is_clear, struct sr_pbrt_params *to)
 {
     static const char *const both[] = {"displacement", "normalmap"};
-    const struct sr_pbrt_param *colour = find(c->from, c->family->colour), *eta = find(c->from, c->family->eta);
+    const struct sr_pbrt_param *colour = sr_pbrt_peek(&c->from->params, c->family->colour),
+                               *eta = sr_pbrt_peek(&c->from->params, c->family->eta);
     for (int i = 0; i < 2; ++i)
-        if (find(c->from, both[i]))
-            add(to, find(c->from, both[i]), both[i]);
+        if (sr_pbrt_peek(&c->from->params, both[i]))
+            add(to, sr_pbrt_peek(&c->from->params, both[i]), both[i]);
     if (!is_clear && colour)
         add(to, colour, "reflectance");
     else if (!is_clear) {
@@ -163,7 +156,7 @@ static void tell_losses(struct change *c)
 /* The share of something that is no texture; a texture counts as half. */
 static float share(const struct sr_pbrt_entity *e, const char *name)
 {
-    const struct sr_pbrt_param *p = find(e, name);
+    const struct sr_pbrt_param *p = sr_pbrt_peek(&e->params, name);
     return !p ? 0 : p->type == SR_PBRT_TEXTURE || !p->floats ? 0.5f : p->floats[0];
 }
 
@@ -191,7 +184,7 @@ static void change(struct change *c, struct sr_pbrt_entity *e)
     }
     *add(&params, NULL, "materials") = (struct sr_pbrt_param){
         .type = SR_PBRT_STRING_TYPE, .name = "materials", .count = 2, .strings = keep(c, names, sizeof names)};
-    add(&params, find(e, c->family->metal), "amount");
+    add(&params, sr_pbrt_peek(&e->params, c->family->metal), "amount");
     e->model = "mix";
     e->params = params;
 }
@@ -212,7 +205,7 @@ sr_status sr_pbrt_closest_material(struct sr_pbrt_description *d, struct sr_pbrt
     else {
         sr_pbrt_warn(d, e->where, "material \"%s\": pbrt has no %s: diffuse instead", e->name ? e->name : "", e->model);
         struct sr_pbrt_params params = room(&c);
-        const struct sr_pbrt_param *colour = find(e, "reflectance");
+        const struct sr_pbrt_param *colour = sr_pbrt_peek(&e->params, "reflectance");
         if (params.items && colour)
             add(&params, colour, "reflectance");
         e->model = "diffuse";

@@ -13,23 +13,15 @@ struct baker {
     struct sr_error *error;
 };
 
-static const struct sr_pbrt_param *find(const struct sr_pbrt_entity *e, const char *name)
-{
-    for (uint32_t i = 0; i < e->params.count; ++i)
-        if (strcmp(e->params.items[i].name, name) == 0)
-            return &e->params.items[i];
-    return NULL;
-}
-
 static float number(const struct sr_pbrt_entity *e, const char *name, float initial)
 {
-    const struct sr_pbrt_param *p = find(e, name);
+    const struct sr_pbrt_param *p = sr_pbrt_peek(&e->params, name);
     return p && p->floats && p->count ? p->floats[0] : initial;
 }
 
 static const char *word(const struct sr_pbrt_entity *e, const char *name, const char *initial)
 {
-    const struct sr_pbrt_param *p = find(e, name);
+    const struct sr_pbrt_param *p = sr_pbrt_peek(&e->params, name);
     return p && p->strings && p->count ? p->strings[0] : initial;
 }
 
@@ -150,7 +142,7 @@ static void add_mapping(struct baker *b, const struct sr_pbrt_entity *e, struct 
 {
     static const char *const names[] = {"uscale", "vscale", "udelta", "vdelta"};
     static const float plain[4] = {1, 1, 0, 0};
-    const struct sr_pbrt_param *t = find(e, "transform");
+    const struct sr_pbrt_param *t = sr_pbrt_peek(&e->params, "transform");
     const char *s_wrap = word(e, "swrap", "repeat"), *t_wrap = word(e, "twrap", "repeat");
     if (t && t->floats && t->count == 6) {
         const float *m = t->floats, values[4] = {m[0], m[4], m[2], m[5]};
@@ -160,7 +152,7 @@ static void add_mapping(struct baker *b, const struct sr_pbrt_entity *e, struct 
             if (values[i] != plain[i])
                 add(b, to, SR_PBRT_FLOAT, names[i], &values[i], 1);
     }
-    if (find(e, "uv"))
+    if (sr_pbrt_peek(&e->params, "uv"))
         warn(b, e, "pbrt has one set of texture coordinates: this one's are lost");
     if (strcmp(s_wrap, "clamp") == 0 && strcmp(t_wrap, "clamp") == 0)
         add(b, to, SR_PBRT_STRING_TYPE, "wrap", &s_wrap, 1);
@@ -175,7 +167,7 @@ static bool change_texelmap(struct baker *b, struct sr_pbrt_texture *t)
     static const char *const channels[] = {"r", "g", "b", "a", "mean"}, *const linear = "linear";
     struct sr_pbrt_entity *e = &t->entity;
     struct sr_pbrt_params params = room(b);
-    const struct sr_pbrt_param *factor = find(e, "factor");
+    const struct sr_pbrt_param *factor = sr_pbrt_peek(&e->params, "factor");
     const char *filename = word(e, "filename", ""), *encoding = word(e, "encoding", "sRGB");
     bool is_linear = strcmp(encoding, "linear") == 0,
          is_tinted = factor && factor->count == 3 &&
@@ -222,7 +214,7 @@ static void change_attribute(struct baker *b, struct sr_pbrt_texture *t)
 static void change_product(struct baker *b, struct sr_pbrt_texture *t)
 {
     struct sr_pbrt_params params = room(b);
-    const struct sr_pbrt_param *first = find(&t->entity, "tex1");
+    const struct sr_pbrt_param *first = sr_pbrt_peek(&t->entity.params, "tex1");
     if (!params.items)
         return;
     if (first) {
@@ -235,7 +227,7 @@ static void change_product(struct baker *b, struct sr_pbrt_texture *t)
 
 static bool change_threshold(struct baker *b, struct sr_pbrt_texture *t)
 {
-    const struct sr_pbrt_param *p = find(&t->entity, "tex");
+    const struct sr_pbrt_param *p = sr_pbrt_peek(&t->entity.params, "tex");
     uint32_t index1 = p && p->type == SR_PBRT_TEXTURE ? sr_pbrt_names_find(&b->d->float_textures, p->strings[0]) : 0;
     const struct sr_pbrt_entity *from =
         index1 ? &SR_PBRT_AT(b->d->textures, struct sr_pbrt_texture, index1 - 1)->entity : NULL;
@@ -310,7 +302,7 @@ bool sr_pbrt_is_normal_texture(const struct sr_pbrt_description *d, const char *
 
 sr_status sr_pbrt_closest_normals(struct sr_pbrt_description *d, struct sr_pbrt_entity *e, struct sr_error *error)
 {
-    const struct sr_pbrt_param *x = find(e, "normalx");
+    const struct sr_pbrt_param *x = sr_pbrt_peek(&e->params, "normalx");
     uint32_t index1 = x && x->type == SR_PBRT_TEXTURE ? sr_pbrt_names_find(&d->float_textures, x->strings[0]) : 0;
     if (!index1)
         return SR_OK;
@@ -324,7 +316,7 @@ sr_status sr_pbrt_closest_normals(struct sr_pbrt_description *d, struct sr_pbrt_
         if (!is_normal(e->params.items[i].name))
             params.items[params.count++] = e->params.items[i];
     add(&b, &params, SR_PBRT_STRING_TYPE, "normalmap", &filename, 1);
-    if (number(map, "scale", 2) != 2 || find(map, "transform") || find(map, "uv"))
+    if (number(map, "scale", 2) != 2 || sr_pbrt_peek(&map->params, "transform") || sr_pbrt_peek(&map->params, "uv"))
         sr_pbrt_warn(d, e->where, "material \"%s\": the scale and the place of its normal map are lost",
                      e->name ? e->name : "");
     e->params = params;

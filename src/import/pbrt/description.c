@@ -174,14 +174,20 @@ const char *sr_pbrt_suggestion_text(const struct sr_pbrt_suggestion *s, char buf
 
 /* ---- look-up ---- */
 
-struct sr_pbrt_param *sr_pbrt_find(const struct sr_pbrt_params *params, const char *name)
+struct sr_pbrt_param *sr_pbrt_peek(const struct sr_pbrt_params *params, const char *name)
 {
     for (uint32_t i = 0; i < params->count; ++i)
-        if (strcmp(params->items[i].name, name) == 0) {
-            params->items[i].used = true;
+        if (strcmp(params->items[i].name, name) == 0)
             return &params->items[i];
-        }
     return NULL;
+}
+
+struct sr_pbrt_param *sr_pbrt_find(const struct sr_pbrt_params *params, const char *name)
+{
+    struct sr_pbrt_param *p = sr_pbrt_peek(params, name);
+    if (p)
+        p->used = true;
+    return p;
 }
 
 static sr_status get(const struct sr_pbrt_description *d, const struct sr_pbrt_params *params, const char *name,

@@ -218,7 +218,8 @@ uint32_t sr_pbrt_names_find(const struct sr_pbrt_names *n, const char *name);   
 void sr_pbrt_names_suggest(const struct sr_pbrt_names *n, struct sr_pbrt_suggestion *s);
 void sr_pbrt_names_free(struct sr_pbrt_names *n);
 
-/* The entity's parameter of that name, whatever its type; marks it used. NULL: not given. */
+/* The entity's parameter of that name, whatever its type; NULL: not given. find marks it used. */
+struct sr_pbrt_param *sr_pbrt_peek(const struct sr_pbrt_params *params, const char *name);
 struct sr_pbrt_param *sr_pbrt_find(const struct sr_pbrt_params *params, const char *name);
 /* Values of a parameter of that name and type; the first initial value where there is none. A wrong type is an error.
  */

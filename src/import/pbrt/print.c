@@ -214,20 +214,14 @@ void sr_print_params(struct sr_print *out, const struct sr_pbrt_params *params)
 
 /* ---- meshes ---- */
 
-static const struct sr_pbrt_param *find(const struct sr_pbrt_params *params, const char *name)
-{
-    for (uint32_t i = 0; i < params->count; ++i)
-        if (strcmp(params->items[i].name, name) == 0)
-            return &params->items[i];
-    return NULL;
-}
-
 bool sr_print_is_mesh(const char *model, const struct sr_pbrt_params *params, uint32_t more_than,
                       struct sr_print_mesh *mesh)
 {
-    const struct sr_pbrt_param *P = find(params, "P"), *N = find(params, "N"), *uv = find(params, "uv"),
-                               *indices = find(params, "indices"), *faces = find(params, "faceIndices");
-    if (strcmp(model, "trianglemesh") != 0 || !P || !P->floats || !indices || !indices->ints || find(params, "S"))
+    const struct sr_pbrt_param *P = sr_pbrt_peek(params, "P"), *N = sr_pbrt_peek(params, "N"),
+                               *uv = sr_pbrt_peek(params, "uv"), *indices = sr_pbrt_peek(params, "indices"),
+                               *faces = sr_pbrt_peek(params, "faceIndices");
+    if (strcmp(model, "trianglemesh") != 0 || !P || !P->floats || !indices || !indices->ints ||
+        sr_pbrt_peek(params, "S"))
         return false;
     *mesh = (struct sr_print_mesh){
         .P = P->floats, .indices = indices->ints, .vertex_count = P->count / 3, .triangle_count = indices->count / 3};

@@ -97,9 +97,7 @@ static sr_status read_one(struct sr_pbrt_build *b, const struct sr_pbrt_entity *
                             u.material ? u.material
                             : u.light  ? u.light
                                        : u.area_light);
-    struct sr_pbrt_param *p = NULL;
-    for (uint32_t i = 0; i < of->params.count && !p; ++i)
-        p = strcmp(of->params.items[i].name, u.parameter) == 0 ? &of->params.items[i] : NULL;
+    struct sr_pbrt_param *p = sr_pbrt_peek(&of->params, u.parameter);
     if (!p || !has_numbers(p))
         return sr_pbrt_fail(
             b->d, e->where, b->error, SR_ERROR_INPUT,

@@ -26,10 +26,7 @@ static void no_memory(struct sr_pbrt_upgrade *u)
 
 struct sr_pbrt_param *sr_pbrt_edit_find(struct sr_pbrt_upgrade *u, const char *name)
 {
-    for (uint32_t i = 0; i < u->s->params.count; ++i)
-        if (strcmp(u->s->params.items[i].name, name) == 0)
-            return &u->s->params.items[i];
-    return NULL;
+    return sr_pbrt_peek(&u->s->params, name);
 }
 
 void sr_pbrt_edit_remove(struct sr_pbrt_upgrade *u, const char *name)
