@@ -331,6 +331,8 @@ static sr_status decode(const struct sr_image_source *source, struct sr_image **
     if (exr)
         exr_finish(&exr);
     current_job = NULL;
+    if (status == SR_OK && job.has_no_memory) // the library leaves out an attribute that it has no memory for
+        status = fail(&job, error, "", EXR_ERR_OUT_OF_MEMORY);
     if (status != SR_OK) {
         sr_image_free(*image);
         *image = NULL;

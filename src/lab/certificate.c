@@ -103,6 +103,7 @@ static void certify_set(void *context, uint64_t i)
     }
     struct certifying c = {.options = w->options,
                            .findings = &w->findings[i],
+                           .error = &w->errors[i],
                            .subject = s,
                            .rng = sr_rng_seed(w->options->seed, i + 1),
                            .samples = w->samples,
@@ -228,7 +229,8 @@ static sr_status certify(struct work *w, struct sr_certificate *out, struct sr_e
                 lab_subject_of_specimen(w->specimen, s);
                 asymmetry = s->asymmetry;
                 largest_albedo = s->largest_albedo;
-            }
+            } else
+                status = sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for a certificate");
             sr_free(s);
         } else {
             asymmetry = (double)w->model->asymmetry;
@@ -287,6 +289,7 @@ static void soak_batch(void *context, uint64_t batch)
     }
     struct certifying c = {.options = w->options,
                            .findings = &w->findings[batch],
+                           .error = &w->errors[batch],
                            .subject = s,
                            .rng = sr_rng_seed(w->options->seed + 1000003ull, batch + 1)};
     struct sr_arena arena = {0};

@@ -100,6 +100,7 @@ struct findings {
 struct certifying {
     const struct sr_certificate_options *options;
     struct findings *findings;
+    struct sr_error *error; // of the resources that checks take
     struct subject *subject;
     struct sr_rng rng;
     uint32_t samples;    // of one statistical test

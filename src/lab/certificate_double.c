@@ -16,7 +16,9 @@ void lab_check_double(struct certifying *c)
     const struct sr_twin *twin = NULL;
     if (s->is_random)
         lab_skip(c, CHECK_DOUBLE, "f is a random estimate: its walks part ways");
-    else if (sr_twin_make(&arena, s->b, s->at.lambda, SR_TWIN_SAME, &twin, &error) != SR_OK)
+    else if (sr_twin_make(&arena, s->b, s->at.lambda, SR_TWIN_SAME, &twin, &error) == SR_ERROR_RESOURCE)
+        *c->error = error;
+    else if (error.status != SR_OK)
         lab_find(c, CHECK_DOUBLE, 1, true, "%s", error.text);
     for (int i = 0; i < 300 && twin; ++i) {
         sr_vec3 wo = lab_anywhere(&c->rng), wi = lab_partner(c, wo);

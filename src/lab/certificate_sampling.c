@@ -422,6 +422,8 @@ void lab_check_sampling(struct certifying *c)
     struct spot *spots = sr_alloc(FIRST_RUN * sizeof *spots);
     char set[80];
     lab_describe(s, 0, set, sizeof set);
+    if (!cells.items || !spots)
+        sr_fail(c->error, SR_ERROR_RESOURCE, "not enough memory for a certificate");
     uint32_t directions = cells.items && spots && sr_bsdf_lobes(s->b) ? c->directions : 0; // black: draws nothing
     for (uint32_t i = 0; i < directions; ++i) {
         sr_vec3 wo = lab_sphere(&c->rng);

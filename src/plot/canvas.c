@@ -94,10 +94,12 @@ void sr_canvas_text(struct plot_canvas *canvas, double x, double y, const struct
     if (type->is_upward)
         box = (struct plot_box){x + top, y - left - width, x + bottom, y - left};
     struct plot_text_box *kept = sr_array_push(&canvas->texts, sizeof *kept);
-    if (kept) {
-        kept->box = box;
-        snprintf(kept->text, sizeof kept->text, "%s", text);
+    if (!kept) {
+        canvas->has_no_memory = true;
+        return;
     }
+    kept->box = box;
+    snprintf(kept->text, sizeof kept->text, "%s", text);
 }
 
 void sr_canvas_colour(struct plot_canvas *canvas, struct sr_plot_colour c)
@@ -153,6 +155,7 @@ static void keep(const double (*p)[2], size_t first, size_t last, bool *kept)
 void sr_canvas_run(struct plot_canvas *canvas, const double (*points)[2], size_t count)
 {
     bool *kept = sr_alloc(count + 1);
+    canvas->has_no_memory |= !kept;
     if (kept && count > 2)
         keep(points, 0, count - 1, kept);
     for (size_t i = 0; i < count; ++i) {

@@ -141,6 +141,8 @@ static sr_status encode(const struct sr_plot_figure *figure, struct plot_canvas 
     if (!canvas->is_vector)
         cairo_scale(canvas->cr, canvas->pixels, canvas->pixels);
     draw_figure(canvas, figure, error);
+    if (!error->status && canvas->has_no_memory)
+        sr_fail(error, SR_ERROR_RESOURCE, "not enough memory for a figure");
     cairo_status_t status = cairo_status(canvas->cr);
     cairo_destroy(canvas->cr);
     if (status == CAIRO_STATUS_SUCCESS && !canvas->is_vector && !error->status)

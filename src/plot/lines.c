@@ -62,6 +62,7 @@ static void draw_curve(struct plot_canvas *canvas, struct plot_box box, const st
     sr_canvas_colour(canvas, colour);
     sr_canvas_dash(canvas, c->dash, c->width > 0 ? c->width : 1.6);
     double(*run)[2] = sr_arena_alloc(&canvas->arena, ((size_t)c->count + 1) * sizeof *run);
+    canvas->has_no_memory |= !run;
     size_t length = 0;
     for (uint32_t i = 0; i <= c->count && run && !c->has_no_line; ++i) {
         if (i < c->count && !isnan(c->x[i]) && !isnan(c->y[i])) {

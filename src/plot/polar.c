@@ -146,6 +146,7 @@ static void draw_curve(struct plot_canvas *canvas, const struct disc *d, const s
                        const struct sr_plot_curve *c, struct sr_plot_colour colour)
 {
     double(*run)[2] = sr_arena_alloc(&canvas->arena, ((size_t)c->count + 1) * sizeof *run);
+    canvas->has_no_memory |= !run;
     size_t length = 0;
     for (uint32_t i = 0; i <= c->count && run; ++i) {
         if (i < c->count && !isnan(c->x[i]) && !isnan(c->y[i])) {

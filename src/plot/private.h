@@ -26,6 +26,7 @@ struct plot_canvas {
     const char *family;
     struct sr_array texts; // struct plot_text_box
     struct sr_arena arena; // of what drawing needs
+    bool has_no_memory;    // something has been left out for that
 };
 
 struct plot_type { // how a text looks; zeroed: 11 px, black, its left end on the base line

@@ -83,7 +83,7 @@ static int by_depth(const void *a, const void *b)
     return x->order < y->order ? -1 : x->order > y->order;
 }
 
-static void add(struct sr_array *pieces, const struct eye *eye, struct piece piece)
+static void add(struct plot_canvas *canvas, struct sr_array *pieces, const struct eye *eye, struct piece piece)
 {
     double sum = 0;
     for (uint32_t i = 0; i < piece.corners; ++i) {
@@ -94,11 +94,13 @@ static void add(struct sr_array *pieces, const struct eye *eye, struct piece pie
     piece.depth = sum / piece.corners;
     piece.order = (uint32_t)pieces->count;
     struct piece *kept = sr_array_push(pieces, sizeof *kept);
+    canvas->has_no_memory |= !kept;
     if (kept)
         *kept = piece;
 }
 
-static void add_body(struct sr_array *pieces, const struct eye *eye, const struct sr_plot_body *body)
+static void add_body(struct plot_canvas *canvas, struct sr_array *pieces, const struct eye *eye,
+                     const struct sr_plot_body *body)
 {
     for (uint32_t row = 0; row + 1 < body->rows; ++row)
         for (uint32_t column = 0; column + 1 < body->columns; ++column) {
@@ -113,11 +115,12 @@ static void add_body(struct sr_array *pieces, const struct eye *eye, const struc
             piece.fill = body->fills ? body->fills[(size_t)row * (body->columns - 1) + column] : body->fill;
             if (!body->is_flat && piece.fill.a > 0)
                 piece.fill = shaded(piece.fill, eye, &piece);
-            add(pieces, eye, piece);
+            add(canvas, pieces, eye, piece);
         }
 }
 
-static void add_arrow(struct sr_array *pieces, const struct eye *eye, const struct sr_plot_arrow *arrow)
+static void add_arrow(struct plot_canvas *canvas, struct sr_array *pieces, const struct eye *eye,
+                      const struct sr_plot_arrow *arrow)
 {
     enum { BITS = 48 };
     const double *tail = arrow->from;
@@ -134,7 +137,7 @@ static void add_arrow(struct sr_array *pieces, const struct eye *eye, const stru
             piece.p[0][k] = tail[k] + d[k] * shown * i / BITS;
             piece.p[1][k] = tail[k] + d[k] * shown * (i + 1) / BITS;
         }
-        add(pieces, eye, piece);
+        add(canvas, pieces, eye, piece);
     }
     if (head > 0) { // a triangle that faces the eye
         double side[3] = {d[1] * eye->toward[2] - d[2] * eye->toward[1], d[2] * eye->toward[0] - d[0] * eye->toward[2],
@@ -148,7 +151,7 @@ static void add_arrow(struct sr_array *pieces, const struct eye *eye, const stru
             piece.p[1][k] = tail[k] + along * (tip - sense * head) + off;
             piece.p[2][k] = tail[k] + along * (tip - sense * head) - off;
         }
-        add(pieces, eye, piece);
+        add(canvas, pieces, eye, piece);
     }
 }
 
@@ -301,9 +304,9 @@ sr_status sr_plot_draw_surface(struct plot_canvas *canvas, struct plot_box cell,
                        panel->title ? panel->title : "");
     struct sr_array pieces = {0};
     for (uint32_t b = 0; b < panel->body_count; ++b)
-        add_body(&pieces, &eye, &panel->bodies[b]);
+        add_body(canvas, &pieces, &eye, &panel->bodies[b]);
     for (uint32_t a = 0; a < panel->arrow_count; ++a)
-        add_arrow(&pieces, &eye, &panel->arrows[a]);
+        add_arrow(canvas, &pieces, &eye, &panel->arrows[a]);
     if (pieces.count)
         qsort(pieces.data, pieces.count, sizeof(struct piece), by_depth);
     if (pieces.count > MANY) {

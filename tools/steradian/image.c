@@ -341,7 +341,8 @@ static sr_status prepare(const struct arguments *a, struct sr_image **image, str
         struct sr_error inner = {0};
         if (sr_image_crop(*image, (uint32_t)a->crop[0], (uint32_t)a->crop[1], (uint32_t)a->crop[2],
                           (uint32_t)a->crop[3], &part, &inner) != SR_OK)
-            return sr_fail(error, SR_ERROR_INPUT, "%s: %s", a->input, inner.text);
+            return sr_fail(error, inner.status == SR_ERROR_USAGE ? SR_ERROR_INPUT : inner.status, "%s: %s", a->input,
+                           inner.text);
         sr_image_free(*image);
         *image = part;
     }

@@ -48,6 +48,7 @@ static const char *skip_comment(struct sr_pbrt_lexer *l, const char *p)
 {
     if (l->annotations && (l->keeps_comments || is_annotation(p))) {
         struct sr_pbrt_annotation *a = sr_array_push(l->annotations, sizeof *a);
+        l->has_no_memory |= !a;
         if (a)
             *a = (struct sr_pbrt_annotation){l->keeps_comments ? p : p + 2, l->line_start, l->line};
     }
@@ -156,6 +157,8 @@ sr_status sr_pbrt_lexer_next(struct sr_pbrt_lexer *l, struct sr_pbrt_token *toke
         return SR_OK;
     }
     skip_space(l);
+    if (SR_UNLIKELY(l->has_no_memory))
+        return sr_fail(error, SR_ERROR_RESOURCE, "%s: not enough memory", l->file);
     *token = (struct sr_pbrt_token){.text = l->p, .length = 1, .where = location(l, l->p)};
     switch (*l->p) {
     case '[':

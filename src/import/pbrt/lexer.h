@@ -32,6 +32,7 @@ struct sr_pbrt_lexer {
     bool is_annotation;           // it reads the words of comments "#@ …" alone, and ends with the last of them
     struct sr_array *annotations; // NULL, or struct sr_pbrt_annotation: where comments "#@" have been passed
     bool keeps_comments;          // annotations takes all comments, whose p is then at the #
+    bool has_no_memory;           // for one of them
 };
 
 /* A comment that begins with #@ says something to this program that pbrt does not know. */

@@ -345,3 +345,40 @@ TEST(the_content_tells_the_format_not_the_ending)
     sr_free(data);
     sr_image_free(image);
 }
+
+/* The library leaves out an attribute that it has no memory for, and goes on: the picture would be of other colours. */
+TEST(exr_is_read_whole_or_not_at_all_when_memory_ends)
+{
+    struct sr_image *image = make_image(8, 6, 3, NULL), *whole;
+    struct sr_error error = {0};
+    char path[512];
+    for (uint32_t c = 0; c < 3; ++c)
+        sr_image_set_unit(image, c, "cd/m^2");
+    EXPECT(sr_image_set_attribute(image, "scene", "cornell-box", &error) == SR_OK);
+    image->has_chromaticities = true;
+    double k[4][2] = {{0.7347, 0.2653}, {0.0, 1.0}, {0.0001, -0.0770}, {0.32168, 0.33767}};
+    memcpy(image->chromaticities, k, sizeof k);
+    snprintf(path, sizeof path, "%s/memory.exr", test_folder());
+    EXPECT(sr_image_write(path, image, NULL, &error) == SR_OK);
+    sr_image_free(image);
+    uint64_t before = sr_alloc_count();
+    EXPECT(sr_image_read(path, &whole, &error) == SR_OK);
+    uint64_t all = sr_alloc_count() - before;
+    for (uint64_t i = 0; i < all; ++i) {
+        error = (struct sr_error){0};
+        sr_alloc_fail(i, 1);
+        sr_status status = sr_image_read(path, &image, &error);
+        sr_alloc_fail(0, 0);
+        EXPECT(status == SR_OK || status == SR_ERROR_RESOURCE);
+        if (status != SR_OK)
+            continue;
+        EXPECT(image->has_chromaticities);
+        EXPECT_EQUAL_INT(image->full_width, 8);
+        for (uint32_t c = 0; c < 3; ++c)
+            EXPECT_EQUAL_TEXT(image->channels[c].unit, "cd/m^2");
+        EXPECT_EQUAL_TEXT(sr_image_get_attribute(image, "scene"), "cornell-box");
+        EXPECT_EQUAL_INT(image->attribute_count, whole->attribute_count);
+        sr_image_free(image);
+    }
+    sr_image_free(whole);
+}

@@ -18,15 +18,23 @@ static void note(void *user, enum sr_severity severity, const char *text)
 static struct sr_import_result result;
 static struct sr_error error;
 
-static sr_status try_import(const char *text)
+static sr_status import_again(void)
 {
     char path[1024];
     struct sr_log log = {.write = note};
     snprintf(path, sizeof path, "%s/m.pbrt", test_folder());
     told[0] = 0;
     error = (struct sr_error){0};
-    EXPECT_EQUAL_INT(sr_file_write(path, text, strlen(text), &error), SR_OK);
     return sr_import_pbrt(path, NULL, &result, &log, &error);
+}
+
+static sr_status try_import(const char *text)
+{
+    char path[1024];
+    snprintf(path, sizeof path, "%s/m.pbrt", test_folder());
+    error = (struct sr_error){0};
+    EXPECT_EQUAL_INT(sr_file_write(path, text, strlen(text), &error), SR_OK);
+    return import_again();
 }
 
 static void import(const char *text)
@@ -190,4 +198,26 @@ TEST(shapes_of_one_name_are_one_surface)
     }
     EXPECT(abs(on_disk - 500) < 5);
     sr_import_result_free(&result);
+}
+
+TEST(no_directive_in_a_comment_is_lost_when_memory_ends)
+{
+    static const char text[] = "WorldBegin\n" METER SPHERE "#@ Meter \"fluence\" \"string name\" \"b\"\n";
+    import(text);
+    uint32_t meters = result.meter_count;
+    sr_import_result_free(&result);
+    uint64_t before = sr_alloc_count();
+    EXPECT_EQUAL_INT(import_again(), SR_OK);
+    uint64_t all = sr_alloc_count() - before;
+    sr_import_result_free(&result);
+    for (uint64_t i = 0; i < all; ++i) {
+        sr_alloc_fail(i, 1);
+        sr_status status = import_again();
+        sr_alloc_fail(0, 0);
+        EXPECT(status == SR_OK || status == SR_ERROR_RESOURCE);
+        if (status != SR_OK)
+            continue;
+        EXPECT_EQUAL_INT(result.meter_count, meters);
+        sr_import_result_free(&result);
+    }
 }

@@ -453,3 +453,23 @@ TEST(lamps_hang_and_maps_without_frames_keep_their_proportions)
     EXPECT(plain < size);
     sr_free(data);
 }
+
+TEST(a_figure_is_whole_or_an_error_when_memory_ends)
+{
+    size_t size;
+    uint64_t before = sr_alloc_count();
+    char *whole = encoded(&all, SR_PLOT_SVG, &size, NULL);
+    uint64_t count = sr_alloc_count() - before;
+    for (uint64_t i = 0; i < count; ++i) {
+        struct sr_error error = {0};
+        char *data = NULL;
+        size_t now = 0;
+        sr_alloc_fail(i, 1);
+        sr_status status = sr_plot_encode(&all, SR_PLOT_SVG, &data, &now, NULL, &error);
+        sr_alloc_fail(0, 0);
+        EXPECT(status == SR_OK || status == SR_ERROR_RESOURCE);
+        EXPECT(status != SR_OK || (now == size && memcmp(data, whole, size) == 0));
+        sr_free(data);
+    }
+    sr_free(whole);
+}
