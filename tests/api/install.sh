@@ -26,7 +26,7 @@ pc=$(find "$prefix" -name steradian.pc)
 PKG_CONFIG_PATH=$(dirname "$pc")
 export PKG_CONFIG_PATH
 static=--static
-libdir=$(pkg-config --variable=libdir steradian)
+eval "libdir=$(pkg-config --variable=libdir steradian)" # escaped for a shell
 if [ "$shared" = ON ]; then
     static=
     # nothing but the public interface is seen from outside; of libraries by level the command is a part, which its program calls

@@ -142,7 +142,9 @@ REASONS = [errno.ENOSPC, errno.EIO, errno.EDQUOT]
 
 
 def fault_environment(fault, part, at, **more):
-    return {"LD_PRELOAD": str(fault), "FAULT_FILE": part, "FAULT_AT": str(at), **{f"FAULT_{k.upper()}": str(v) for k, v in more.items()}}
+    # LD_PRELOAD ends names at blanks
+    folders = os.pathsep.join([str(fault.parent), *filter(None, [os.environ.get("LD_LIBRARY_PATH")])])
+    return {"LD_PRELOAD": fault.name, "LD_LIBRARY_PATH": folders, "FAULT_FILE": part, "FAULT_AT": str(at), **{f"FAULT_{k.upper()}": str(v) for k, v in more.items()}}
 
 
 def faults(render, chance, fault, count):
@@ -187,6 +189,7 @@ def faults(render, chance, fault, count):
         expect(code in (0, 4), f"{text}: exit {code}: {err}")
         expect(render.out.read_bytes() == render.bytes, f"{text}: not the bytes of the render that was left alone")
     first.unlink()
+    expect(hit, "no call was made to fail")
     return hit, behind
 
 
