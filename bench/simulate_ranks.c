@@ -5,8 +5,8 @@
  * Events: a thread ends a unit; a wish, a deal, a batch of finished units, a helper's farewell arrives. Rank 0 serves
  * what arrives one by one:
  *
- *     start = arrival + nap / 2 where it was idle, else when it is free;    busy for  serve + bytes * (take + 1 /
- * bandwidth)
+ *     start = arrival + nap / 2 where it was idle, else when it is free
+ *     busy for serve + bytes * (take + 1 / bandwidth)
  *
  * A message of B bytes is under way for  latency + B / bandwidth.  Deals come from the very code of steradian-mpi
  * (pool.c). Limits: threads of a rank do not slow each other down, rank 0's messages take no processor from its

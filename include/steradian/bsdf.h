@@ -56,7 +56,7 @@ struct sr_brdf;
 SR_API sr_status sr_brdf_create(const char *words, struct sr_brdf **brdf, char *error, size_t error_size);
 SR_API void sr_brdf_destroy(struct sr_brdf *brdf); /* NULL is fine */
 
-/* f [1/sr] and pdf [1/sr], with which sr_brdf_sample draws wi, for count pairs of directions at one wavelength. f or
+/* f [1/sr] and pdf [1/sr], with which sr_brdf_draw draws wi, for count pairs of directions at one wavelength. f or
  * pdf may be NULL. Mirrors and clear glass are 0 here: only samples find them. */
 SR_API void sr_brdf_evaluate(const struct sr_brdf *brdf, double lambda_nm /* [nm] */, size_t count,
                              const float (*wo)[3], const float (*wi)[3], float *f /* [1/sr] */,

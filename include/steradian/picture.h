@@ -27,8 +27,8 @@ SR_API float sr_picture_value(const struct sr_picture *picture, uint32_t x, uint
 /* All values: ((y * width) + x) * channel_count + channel, valid as long as the picture. */
 SR_API const float *sr_picture_values(const struct sr_picture *picture);
 
-/* Reads .exr, .png, .jpg, .tga, .pfm, .hdr as linear floats. On failure *picture is NULL and error (if not NULL, of
- * size error_size) holds one sentence. */
+/* Reads .exr, .png, .jpg, .tga, .qoi, .pfm, .hdr as linear floats. On failure *picture is NULL and error (if not NULL,
+ * of size error_size) holds one sentence. */
 SR_API sr_status sr_picture_read(const char *path, struct sr_picture **picture, char *error, size_t error_size);
 /* Writes .exr, .pfm, .hdr, or .png with an exposure chosen from the picture; beside the name, then renamed. */
 SR_API sr_status sr_picture_write(const struct sr_picture *picture, const char *path, char *error, size_t error_size);

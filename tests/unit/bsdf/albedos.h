@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /* A BSDF from words, and its directional albedo by a quadrature that minds the edges of models.
  *
- *     struct sr_bsdf b = bsdf_of("hapke albedo=0.3 version=1981");     parameters that are not named have their
- * defaults EXPECT_ALBEDO("minnaert reflectance=0.8 k=1.5", 0.8, 0.744484, 0.565685, 0.333369)      at 0, 30, 60, 80 deg
+ *     struct sr_bsdf b = bsdf_of("hapke albedo=0.3 version=1981");    parameters that are not named have their defaults
+ *     EXPECT_ALBEDO("minnaert reflectance=0.8 k=1.5", 0.8, 0.744484, 0.565685, 0.333369)    at 0, 30, 60, 80 deg
  */
 #ifndef SR_TESTS_UNIT_BSDF_ALBEDOS_H
 #define SR_TESTS_UNIT_BSDF_ALBEDOS_H
