@@ -44,7 +44,8 @@ struct sr_render_settings {
     void *user;
 };
 
-/* Renders a new picture: R G B in cd/m^2, SE.R SE.G SE.B, samples. SR_CANCELLED: the picture holds what there is. */
+/* Renders a new picture: R G B in cd/m^2 (without a unit where the film has a camera's sensor, an exposure, a white
+ * balance or a limit), SE.R SE.G SE.B, samples. SR_CANCELLED: the picture holds what there is. */
 SR_API sr_status sr_world_render(const struct sr_world *world, const struct sr_render_settings *settings,
                                  struct sr_picture **picture, char *error, size_t error_size);
 

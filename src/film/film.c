@@ -56,6 +56,21 @@ void sr_film_destroy(struct sr_film *film)
     sr_free(film);
 }
 
+double sr_film_imaging_ratio(const struct sr_film_settings *s)
+{
+    return (double)s->exposure_time * (double)s->iso / 100;
+}
+
+bool sr_film_is_radiance(const struct sr_film_settings *s)
+{
+    return fabs(sr_film_imaging_ratio(s) - 1) < 1e-6; // shutters are differences of floats
+}
+
+bool sr_film_is_luminance(const struct sr_film_settings *s)
+{
+    return !s->camera1 && !(s->white_balance > 0) && isinf(s->max_component) && sr_film_is_radiance(s);
+}
+
 void sr_film_response(const struct sr_film_settings *s, float rgb_from_xyz[3][3])
 {
     const struct sr_colour_space *space = sr_colour_space(s->space);
@@ -67,7 +82,7 @@ void sr_film_response(const struct sr_film_settings *s, float rgb_from_xyz[3][3]
         sr_daylight_xy((double)s->white_balance, source);
         sr_white_balance(source, space->xy[3], balance);
     }
-    double imaging_ratio = (double)s->exposure_time * (double)s->iso / 100;
+    double imaging_ratio = sr_film_imaging_ratio(s);
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
             double sum = 0;

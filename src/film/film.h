@@ -70,6 +70,10 @@ void sr_film_camera_matrix(uint32_t camera1, double T, enum sr_colour_space_id s
 /* RGB of the output space from XYZ of the path, or from the camera's values: white balance and imaging ratio =
  * exposure_time * iso / 100 included. */
 void sr_film_response(const struct sr_film_settings *s, float rgb_from_xyz[3][3]);
+double sr_film_imaging_ratio(const struct sr_film_settings *s); // [1]
+bool sr_film_is_radiance(const struct sr_film_settings *s);     // whether that is 1
+/* Whether the picture's values are luminances [cd/m^2]: of the CIE's observer, not exposed, balanced or limited. */
+bool sr_film_is_luminance(const struct sr_film_settings *s);
 
 /* ---- a film ---- */
 

@@ -3,6 +3,7 @@
 #include "render/render.h"
 
 #include <stdio.h>
+#include <string.h>
 
 static const struct channel {
     const char *name, *unit;
@@ -115,13 +116,14 @@ static sr_status create(const struct sr_film *film, const char **names, const ch
     for (uint32_t i = 0; i < film->settings.buckets; ++i) {
         name_bucket(&film->settings, i, bucket_names[i]);
         names[count] = bucket_names[i];
-        // of photometric scenes: as pbrt counts
-        units[count++] = film->settings.bucket_scale < 1 ? "W/(m^2 sr nm)" : "1";
+        bool is_radiance = film->settings.bucket_scale < 1 && sr_film_is_radiance(&film->settings);
+        units[count++] = is_radiance ? "W/(m^2 sr nm)" : "1"; // of photometric scenes: as pbrt counts
     }
     if (sr_image_create(film->width, film->height, count, names, SR_IMAGE_FLOATS, image, error) != SR_OK)
         return error->status;
+    bool is_luminance = sr_film_is_luminance(&film->settings);
     for (uint32_t c = 0; c < count; ++c)
-        sr_image_set_unit(*image, c, units[c]);
+        sr_image_set_unit(*image, c, strncmp(units[c], "cd", 2) != 0 || is_luminance ? units[c] : "");
     return SR_OK;
 }
 

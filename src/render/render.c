@@ -36,7 +36,7 @@ static double splat_unit(const struct sr_render_job *job)
 {
     struct sr_box box = sr_scene_bounds(job->scene);
     double diagonal = (double)sr_length(sr_sub(box.hi, box.lo));
-    double ratio = (double)job->film.exposure_time * (double)job->film.iso / 100;
+    double ratio = sr_film_imaging_ratio(&job->film);
     double value = sr_lights_emitted(sr_scene_lights(job->scene)) / (diagonal * diagonal) * ratio;
     return value > 0x1p-900 && value < 0x1p900 ? ldexp(1, ilogb(value) - 60) : 0x1p-56;
 }

@@ -58,3 +58,12 @@ TEST(regions_are_told_in_words)
     run_expecting(2, "image w.exr --region 4,4,4,8 --statistics");
     EXPECT_SAYS(run_expecting(3, "image w.exr --region 0,0,17,4 --statistics")->err, "the region ends at 17,4");
 }
+
+TEST(regions_without_light_are_not_called_exactly_dark)
+{
+    put_file("night.pbrt",
+             "Film \"rgb\" \"integer xresolution\" 8 \"integer yresolution\" 8\nWorldBegin\nShape \"sphere\"\n");
+    run_expecting(0, "render night.pbrt --spp 4 -o night.exr -q");
+    const struct said *s = run_expecting(0, "image night.exr --statistics");
+    EXPECT_SAYS(s->out, "L_v  mean 0 cd/m^2 (uncertainty not known)");
+}

@@ -173,3 +173,39 @@ TEST(render_crops)
     sr_image_free(whole);
     sr_image_free(part);
 }
+
+/* Exposed, balanced, limited or seen by a camera, a picture's values are no luminances, and nobody is to take them so.
+ */
+TEST(render_calls_no_exposed_picture_luminance)
+{
+    static const char *const films[] = {"\"float iso\" 200", "\"string sensor\" \"nikon_d850\"",
+                                        "\"float whitebalance\" 3000", "\"float maxcomponentvalue\" 1",
+                                        "\"float iso\" 100"};
+    for (int i = 0; i < 5; ++i) {
+        char scene[1024];
+        snprintf(scene, sizeof scene,
+                 "Camera \"fisheye\" \"string mapping\" \"equidistant\"\n"
+                 "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16 %s\n"
+                 "Sampler \"zsobol\" \"integer pixelsamples\" 4\nWorldBegin\n"
+                 "LightSource \"infinite\" \"rgb L\" [1 1 1] \"float scale\" 100\n",
+                 films[i]);
+        put_file("exposed.pbrt", scene);
+        bool is_luminance = i == 4;
+        const struct said *s = run_expecting(0, "render exposed.pbrt -o exposed.exr");
+        EXPECT((strstr(s->err, "mean luminance L_v = ") != NULL) == is_luminance);
+        EXPECT((strstr(s->err, "no luminances") != NULL) == !is_luminance);
+        struct sr_image *image = get_image("exposed.exr");
+        EXPECT_EQUAL_TEXT(image->channels[sr_image_find_channel(image, "G")].unit, is_luminance ? "cd/m^2" : "");
+        EXPECT_EQUAL_TEXT(image->channels[sr_image_find_channel(image, "SE.G")].unit, is_luminance ? "cd/m^2" : "");
+        EXPECT_EQUAL_TEXT(image->channels[sr_image_find_channel(image, "depth")].unit, "m");
+        sr_image_free(image);
+        s = run_expecting(0, "glare exposed.exr");
+        EXPECT((strstr(s->err, "does not say that its values are in cd/m^2") != NULL) == !is_luminance);
+        run_expecting(0, "render exposed.pbrt --part 1/1 -o exposed.srp -q --no-checkpoint");
+        run_expecting(0, "merge exposed.srp -o merged.exr -q");
+        json_t *j = json_of(run_expecting(0, "merge exposed.srp -o merged.exr --json"));
+        EXPECT_EQUAL_TEXT(json_string_value(json_object_get(json_object_get(j, "mean_luminance"), "unit")),
+                          is_luminance ? "cd/m^2" : "1");
+        json_decref(j);
+    }
+}

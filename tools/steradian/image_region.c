@@ -105,6 +105,8 @@ static struct sr_quantity quantity_of(const struct form *forms, int count, int k
         return sr_quantity_of_tally(&t, unit);
     }
     const struct form *f = &forms[k];
+    if (f->mean == 0 && f->variance == 0) // nothing was found: that is not sure to be all
+        return (struct sr_quantity){.u = NAN, .unit = unit};
     return (struct sr_quantity){.value = f->mean,
                                 .u = sqrt(f->variance),
                                 .degrees = f->fourth > 0 ? f->variance * f->variance / f->fourth : INFINITY,

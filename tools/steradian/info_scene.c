@@ -40,11 +40,6 @@ static double MiB(uint64_t bytes)
     return (double)bytes / 1048576;
 }
 
-static double imaging_ratio(const struct sr_film_settings *f)
-{
-    return (double)f->exposure_time * (double)f->iso / 100;
-}
-
 static void print_scene(const char *path, const struct sr_import_result *r, unsigned warnings)
 {
     struct sr_scene_counts c = sr_scene_count(r->scene);
@@ -57,7 +52,7 @@ static void print_scene(const char *path, const struct sr_import_result *r, unsi
            warnings == 1 ? "" : "s");
     printf("  sensor       %s\n", r->sensor.model->name);
     printf("  film         %d x %d pixels, colour space %s, imaging ratio %g [1], file \"%s\"\n", f->width, f->height,
-           sr_colour_space(f->space)->name, imaging_ratio(f), f->filename);
+           sr_colour_space(f->space)->name, sr_film_imaging_ratio(f), f->filename);
     if (f->x0 || f->y0 || f->x1 != f->width || f->y1 != f->height)
         printf("               rendered: x %d to %d, y %d to %d [pixel]\n", f->x0, f->x1 - 1, f->y0, f->y1 - 1);
     printf("  filter       %s, radius %g x %g pixels\n", r->filter.model->name, (double)r->filter.radius.x,
@@ -118,8 +113,8 @@ static int print_scene_json(const char *path, const struct sr_import_result *r, 
         "file", command_json_text(path), "kind", "scene", "hash", hash, "warnings", (int)warnings, "sensor",
         r->sensor.model->name, "film", "width", (int)f->width, "height", (int)f->height, "x0", (int)f->x0, "x1",
         (int)f->x1, "y0", (int)f->y0, "y1", (int)f->y1, "unit", "pixel", "colour_space",
-        sr_colour_space(f->space)->name, "imaging_ratio", command_json_quantity(imaging_ratio(f), "1"), "filename",
-        command_json_text(f->filename), "filter", "name", r->filter.model->name, "radius_x",
+        sr_colour_space(f->space)->name, "imaging_ratio", command_json_quantity(sr_film_imaging_ratio(f), "1"),
+        "filename", command_json_text(f->filename), "filter", "name", r->filter.model->name, "radius_x",
         command_json_number((double)r->filter.radius.x), "radius_y", command_json_number((double)r->filter.radius.y),
         "unit", "pixel", "integrator", sr_integrator_label(&r->integrator), "sampler", "name",
         r->sampler == SR_SAMPLER_SOBOL ? "sobol" : "independent", "samples_per_pixel", (json_int_t)r->spp, "seed",

@@ -229,11 +229,8 @@ static int print_json(const struct merging *m, const struct sr_film *film)
 
 static void print_summary(const struct merging *m, const struct sr_film *film)
 {
-    struct sr_quantity L = picture_mean_luminance(film);
     const struct sr_render_report *report = sr_render_part_report(m->all);
-    char text[128];
-    fprintf(stderr, "mean luminance %s%s\n", sr_quantity_text("L_v", &L, text, sizeof text),
-            sr_render_part_is_replicated(m->all) || !isfinite(L.u) ? "" : ", conservative");
+    picture_print_mean(film, !sr_render_part_is_replicated(m->all));
     fprintf(stderr, "%d part%s: %u x %u pixels, %.6g of %u samples each; %llu paths, %llu rays\n", m->a.part_count,
             m->a.part_count > 1 ? "s" : "", film->width, film->height, picture_mean_spp(film),
             sr_render_part_spp(m->all), (unsigned long long)report->paths,

@@ -82,8 +82,24 @@ struct sr_quantity picture_mean_luminance(const struct sr_film *film)
 {
     const struct sr_colour_space *space = sr_colour_space(film->settings.space);
     struct sr_film_mean L = sr_film_region_mean(film, 0, 0, film->width, film->height, space->xyz_from_rgb[1]);
-    struct sr_unit unit = sr_unit_of(SR_KIND_RADIANCE, SR_PHOTOPIC, false);
+    struct sr_unit unit = {0};
+    if (sr_film_is_luminance(&film->settings))
+        unit = sr_unit_of(SR_KIND_RADIANCE, SR_PHOTOPIC, false);
     return (struct sr_quantity){.value = L.mean, .u = L.standard_error, .degrees = L.degrees, .unit = unit};
+}
+
+void picture_print_mean(const struct sr_film *film, bool is_conservative)
+{
+    struct sr_quantity L = picture_mean_luminance(film);
+    bool is_luminance = sr_film_is_luminance(&film->settings);
+    char text[128];
+    fprintf(stderr, "%s %s%s\n", is_luminance ? "mean luminance" : "mean of the picture",
+            sr_quantity_text(is_luminance ? "L_v" : "Y", &L, text, sizeof text),
+            is_conservative && isfinite(L.u) ? ", conservative" : "");
+    if (!is_luminance)
+        fprintf(
+            stderr,
+            "note: the picture is as its film is set (sensor, shutter and iso, white balance, maxcomponentvalue): its values are no luminances\n");
 }
 
 double picture_mean_spp(const struct sr_film *film)

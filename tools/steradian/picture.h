@@ -23,7 +23,8 @@ char *picture_about(struct sr_arena *arena, const struct sr_render_job *job, uin
 /* Writes the files whose endings are images'; the others are somebody else's. */
 sr_status picture_write(const struct picture *p, const char *const *names, int count, struct sr_error *error);
 
-struct sr_quantity picture_mean_luminance(const struct sr_film *film);
+struct sr_quantity picture_mean_luminance(const struct sr_film *film);     // a number where the film tells no luminance
+void picture_print_mean(const struct sr_film *film, bool is_conservative); // to standard error
 /* Mean samples per pixel. */
 double picture_mean_spp(const struct sr_film *film);
 

@@ -60,10 +60,7 @@ json_t *render_measure(const struct render_arguments *a, const struct sr_render_
 void render_print_summary(const struct rendering *r, const struct sr_film *film, const struct sr_render_report *report)
 {
     struct sr_scene_counts all = sr_scene_count(r->scene->scene), *counts = &all;
-    struct sr_quantity L = picture_mean_luminance(film);
-    char text[128];
-    fprintf(stderr, "mean luminance %s%s\n", sr_quantity_text("L_v", &L, text, sizeof text),
-            r->job->replicates || r->job->adaptive.is_on || !isfinite(L.u) ? "" : ", conservative");
+    picture_print_mean(film, !r->job->replicates && !r->job->adaptive.is_on);
     fprintf(stderr, "%u x %u pixels, %.6g samples each%s, %s units; %.2f s, %.2f M paths/s, %.2f M rays/s\n",
             film->width, film->height, picture_mean_spp(film), r->job->adaptive.is_on ? " on average" : "",
             r->scene->units == SR_UNITS_SI ? "SI" : "photometric", report->render_s,
