@@ -121,12 +121,13 @@ def refusals(p):
         ("no such scene", p.ranks(2, "none.pbrt", *small), 3, "none.pbrt"),
         ("no such scene on one rank", two([SCENE, *small], ["none.pbrt", *small]), 3, "rank 1 on "),
         ("other settings on one rank", two([SCENE, *small], [SCENE, *small, "--spp", "5"]), 3, "spp"),
+        ("no render on one rank", two([SCENE, *small], [SCENE, *small, "--estimator", "help"]), 2, "rank 1 on "),
     ):
         said = p.run(command, code)
         expect(text in said, f"{what}: {said}")
         expect(said.count("error: ") <= 1, f"{what} is told more than once: {said}")
         expect(not (p.folder / "no.exr").exists(), f"{what}: wrote a picture")
-    print("refused: 6 mistakes, each told once")
+    print("refused: 7 mistakes, each told once")
 
 
 def lost_rank(p, is_slow):

@@ -273,6 +273,8 @@ static void hear(struct owner *o, struct message *m)
         h->state = HAS_ENDED;
         if (code)
             say_failed(c, m->from, code, (char *)m->bytes + sizeof code);
+        else if (c->meeting != MEETING_HELD)
+            say_failed(c, m->from, SR_ERROR_USAGE, "has ended without a render");
         break;
     }
     }
@@ -455,7 +457,7 @@ static int pump_helper(struct crew *c, struct ending *own)
             memcpy(text + sizeof own->code, own->text, sizeof own->text);
             send(&out, 0, ENDED, text, sizeof text);
             has_told = true;
-        } else if (is_over && !has_told && c->meeting != MEETING_HELD) { // still loading: nobody waits for that
+        } else if (is_over && !has_told) { // loading a scene still, or letting go of it: nobody waits for that
             int code = 0;
             send(&out, 0, ENDED, &code, sizeof code);
             has_told = true;
