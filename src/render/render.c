@@ -3,7 +3,8 @@
 #include "import/import.h"
 #include "render/private.h"
 
-enum { ORDINARY_BLOCKS = 4 };
+// samples of a pixel whose splats come in together are few enough to wait for, once the render is to end
+enum { ORDINARY_BLOCKS = 4, MOST_AT_ONCE = 8192 };
 
 struct sr_render_job sr_render_job_of(const struct sr_import_result *scene)
 {
@@ -81,8 +82,12 @@ static sr_status check(const struct sr_render_job *job, struct sr_error *error)
 
 static struct sr_render_pass pass_of(const struct sr_render_job *job)
 {
+    uint32_t blocks = ORDINARY_BLOCKS;
     // where samples of a number share something over the whole picture, all pixels take them one after the other
-    uint32_t blocks = job->spp < ORDINARY_BLOCKS || job->integrator.model->by_turns ? job->spp : ORDINARY_BLOCKS;
+    if (job->spp < ORDINARY_BLOCKS || job->integrator.model->by_turns)
+        blocks = job->spp;
+    else if (has_splats(job) && job->spp / ORDINARY_BLOCKS > MOST_AT_ONCE)
+        blocks = job->spp / MOST_AT_ONCE;
     return (struct sr_render_pass){.share_end = 1,
                                    .blocks = job->replicates ? job->replicates : blocks,
                                    .per_replicate = job->replicates ? job->spp / job->replicates : 0};

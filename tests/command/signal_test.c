@@ -77,6 +77,20 @@ TEST(signal_terminate_writes_what_there_is)
     expect_interrupted(SIGTERM, 143);
 }
 
+/* What has been splatted cannot be taken back: the samples of a pixel that come in together must not take hours. */
+TEST(signal_ends_paths_from_both_ends_at_any_number_of_samples)
+{
+    remove_file("endless.exr");
+    remove_file("endless.exr.srk");
+    pid_t pid = start("render " CORNELL
+                      " --resolution 16,16 --spp 1073741824 --threads 2 --estimator bdpt -q -o endless.exr");
+    wait_until_caught(pid, SIGTERM);
+    nap(0.3);
+    kill(pid, SIGTERM);
+    EXPECT_EQUAL_INT(finish(pid)->code, 143);
+    EXPECT(sr_file_exists(in_folder("endless.exr.srk")));
+}
+
 /* The terminal or the connection has ended. */
 TEST(signal_hangup_writes_what_there_is)
 {
