@@ -82,8 +82,8 @@ TEST(signal_ends_paths_from_both_ends_at_any_number_of_samples)
 {
     remove_file("endless.exr");
     remove_file("endless.exr.srk");
-    pid_t pid = start("render " CORNELL
-                      " --resolution 16,16 --spp 1073741824 --threads 2 --estimator bdpt -q -o endless.exr");
+    pid_t pid =
+        start("render " CORNELL " --resolution 16,16 --spp 1073741824 --threads 2 --estimator bdpt -q -o endless.exr");
     wait_until_caught(pid, SIGTERM);
     nap(0.3);
     kill(pid, SIGTERM);
