@@ -29,7 +29,7 @@ SR_API void sr_world_destroy(struct sr_world *world); /* NULL is fine */
 /* How to render. Zeroed members leave the scene's own settings: struct sr_render_settings s = {0}; is always valid,
  * and so is NULL in its place. */
 struct sr_render_settings {
-    uint32_t spp;        /* samples per pixel, in all */
+    uint32_t spp;        /* samples per pixel, in all, up to 2^30; 0: the scene's */
     uint32_t replicates; /* R >= 2 independently scrambled nets, for Student's intervals, R divides spp; 0: one net,
                           * conservative errors */
     bool has_seed;

@@ -51,8 +51,8 @@ static sr_status add_splats(const struct sr_render_job *job, struct sr_film *fil
 /* What cannot be rendered. */
 static sr_status check(const struct sr_render_job *job, struct sr_error *error)
 {
-    if (job->spp < 1)
-        return sr_fail(error, SR_ERROR_USAGE, "at least one sample per pixel is needed");
+    if (job->spp < 1 || job->spp > 1u << 30)
+        return sr_fail(error, SR_ERROR_USAGE, "%u samples per pixel: 1 to 2^30 were expected", job->spp);
     if (job->integrator.model == &sr_integrator_quadrature)
         return sr_fail(
             error, SR_ERROR_USAGE,

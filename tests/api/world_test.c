@@ -422,6 +422,10 @@ TEST(threads_and_wavelengths_that_are_none_are_refused)
         struct sr_world_reading reading;
         EXPECT_EQUAL_INT(sr_world_measure(world, 0, &o, &reading, error, sizeof error), SR_ERROR_USAGE);
     }
+    struct sr_picture *picture;
+    EXPECT_EQUAL_INT(sr_world_render(world, &(struct sr_render_settings){.spp = UINT32_MAX}, &picture, NULL, 0),
+                     SR_ERROR_USAGE);
+    EXPECT(!picture);
     sr_world_destroy(world);
 }
 
