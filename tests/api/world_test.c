@@ -389,7 +389,7 @@ TEST(a_render_of_endless_units_stops_when_it_is_asked_to)
     struct sr_world *world = load_floor_and_sky();
     struct sr_picture *picture;
     int asked = 0;
-    struct sr_render_settings settings = {.spp = UINT32_MAX, .progress = stop_and_count, .user = &asked};
+    struct sr_render_settings settings = {.spp = 1u << 30, .progress = stop_and_count, .user = &asked};
     EXPECT_EQUAL_INT(sr_world_render(world, &settings, &picture, NULL, 0), SR_CANCELLED);
     EXPECT(asked >= 1 && picture);
     sr_picture_destroy(picture);
