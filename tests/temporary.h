@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Folders for a test's files, where TMPDIR says or in /tmp. */
+/* Folders for a test's files, where TMPDIR says or where the system has them. */
 #ifndef SR_TESTS_TEMPORARY_H
 #define SR_TESTS_TEMPORARY_H
 
@@ -11,7 +11,7 @@
 static inline bool make_temporary_folder(const char *name, char path[512])
 {
     const char *parent = getenv("TMPDIR");
-    int n = snprintf(path, 512, "%s/steradian-%s-XXXXXX", parent && parent[0] ? parent : "/tmp", name);
+    int n = snprintf(path, 512, "%s/steradian-%s-XXXXXX", parent && parent[0] ? parent : P_tmpdir, name);
     return n < 512 && mkdtemp(path);
 }
 

@@ -3,7 +3,7 @@
 #include "import/import.h"
 #include "render/private.h"
 
-// samples of a pixel whose splats come in together are few enough to wait for, once the render is to end
+// MOST_AT_ONCE: of a pixel with splats, which come in together: a render that is to end waits for so many samples
 enum { ORDINARY_BLOCKS = 4, MOST_AT_ONCE = 8192 };
 
 struct sr_render_job sr_render_job_of(const struct sr_import_result *scene)
